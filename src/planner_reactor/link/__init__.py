@@ -1,0 +1,1 @@
+"""The link: what passes between planner and reactor, and how."""

@@ -1,0 +1,39 @@
+"""Messages as bytes: strict MessagePack, one message a frame.
+
+What does not decode is refused with a typed error; nothing is evaluated, nothing is guessed.
+"""
+
+from __future__ import annotations
+
+from typing import TypeAlias
+
+import msgspec
+
+from planner_reactor.errors import InputError
+from planner_reactor.link.messages import Adaptation, Perception
+
+Message: TypeAlias = Adaptation | Perception
+
+LARGEST = 1_000_000
+"""Bytes of the largest message that is decoded."""
+
+_KINDS: dict[str, type[Adaptation] | type[Perception]] = {"adaptation": Adaptation, "perception": Perception}
+_encode = msgspec.msgpack.Encoder(enc_hook=str).encode
+
+
+def encode(message: Message) -> bytes:
+    """One message as MessagePack: `[kind, fields]`."""
+    return _encode([type(message).__name__.lower(), message])
+
+
+def decode(frame: bytes) -> Message:
+    """The message in a frame; `InputError` if it is too large, malformed or of an unknown kind."""
+    if len(frame) > LARGEST:
+        raise InputError(f"a message of {len(frame)} bytes, expected at most {LARGEST}")
+    try:
+        kind, body = msgspec.msgpack.decode(frame, type=tuple[str, msgspec.Raw])
+        if kind not in _KINDS:
+            raise InputError(f"a message of unknown kind {kind!r}, expected one of {', '.join(sorted(_KINDS))}")
+        return msgspec.msgpack.decode(body, type=_KINDS[kind])
+    except msgspec.MsgspecError as problem:
+        raise InputError(f"a malformed message: {problem}") from None

@@ -1,0 +1,369 @@
+"""The situation store of a running reactor: what `rs.store` says, fast and in place (R §5.1, §5.2, §5.5).
+
+Instances with their owners, bodies in service and values; per situation its reactions, inhibitions, drains and queued
+ASSERTs. Each change draws its consequences at once, without recursion, and tells the executer which waiting strands
+end (`end`) or may try again (`wake`). What the processes of Tables 1 and 2 do with it is in `controls`.
+
+Legend: s situation, k instance number, g reaction = (label of its guard or None, place of its SIT).
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Hashable, Iterator
+from typing import Protocol, TypeAlias
+
+from planner_reactor.reactor.instances import (
+    Inhibition,
+    Instance,
+    Kind,
+    QueuedAssert,
+    Reaction,
+    Served,
+    Situation,
+    Strand,
+)
+
+
+class Waker(Protocol):
+    """What the store asks of the executer."""
+
+    def ended(self, strand: Strand, ok: bool, values: tuple[object, ...], cause: str) -> None:
+        """The process that this strand waits in ends, inside the present step."""
+
+    def wake(self, strand: Strand) -> None:
+        """The process that this strand waits in may try again, as a step of its own."""
+
+
+Notice: TypeAlias = Callable[..., None]
+
+
+class Situations:
+    """I, H, D, Q and run. `notice(kind, **fields)` is told of every change; it must not change the store."""
+
+    def __init__(self, waker: Waker, notice: Notice) -> None:
+        self._waker = waker
+        self._notice = notice
+        self._by_name: dict[str, Situation] = {}
+        self._instances: dict[int, Instance] = {}
+        self._awaited: dict[Strand, Instance] = {}
+        self._queued: dict[Strand, QueuedAssert] = {}
+        self._count = 0
+        self._tickets = 0
+        self._services = 0
+        self.spawned: set[str] = set()  # served by `::`: may be asserted from below themselves
+
+    def named(self, name: str) -> Situation:
+        if (situation := self._by_name.get(name)) is None:
+            situation = self._by_name[name] = Situation(name)
+        return situation
+
+    def __iter__(self) -> Iterator[Situation]:
+        return iter(self._by_name.values())
+
+    @property
+    def instances(self) -> dict[int, Instance]:
+        return self._instances
+
+    def get(self, situation: str, number: object) -> Instance | None:
+        instance = self._instances.get(number) if isinstance(number, int) else None
+        return instance if instance is not None and instance.situation.name == situation else None
+
+    # -- ASSERT, REASSERT
+
+    def assert_(
+        self, name: str, arguments: tuple[object, ...], owner: Instance | None, strand: Strand, *, again: bool
+    ) -> str:
+        """Begin an instance, or queue. Returns "" if the strand waits, else the cause for which it fails at once."""
+        if owner is not None and owner.gone:
+            return "withdrawn"
+        if name not in self.spawned and self._above(owner, name):
+            return "error"
+        situation = self.named(name)
+        if situation.held_back:
+            self._queue(situation, arguments, owner, strand, again)
+        else:
+            self._begin(situation, arguments, owner, strand, again)
+        return ""
+
+    @staticmethod
+    def _above(owner: Instance | None, name: str) -> bool:
+        while owner is not None:
+            if owner.situation.name == name:
+                return True
+            owner = owner.owner
+        return False
+
+    def _begin(
+        self, situation: Situation, arguments: tuple[object, ...], owner: Instance | None, strand: Strand, again: bool
+    ) -> None:
+        self._count += 1
+        instance = Instance(self._count, situation, arguments, owner, strand, again)
+        situation.instances[instance.number] = self._instances[instance.number] = instance
+        self._awaited[strand] = instance
+        if owner is not None:
+            owner.children[instance.number] = instance
+        self._notice("asserted", situation=situation.name, instance=instance.number, arguments=arguments,
+                     owner=owner.number if owner else None)  # fmt: skip
+        for served in situation.reactions.values():
+            served.fresh.append(instance)
+        self._offer(situation)
+
+    def _queue(
+        self, situation: Situation, arguments: tuple[object, ...], owner: Instance | None, strand: Strand, again: bool
+    ) -> None:
+        self._tickets += 1
+        entry = QueuedAssert(self._tickets, situation, arguments, owner, strand, again)
+        situation.queue[entry.ticket] = self._queued[strand] = entry
+        if owner is not None:
+            owner.queued[entry.ticket] = entry
+        self._notice("queued", situation=situation.name, owner=owner.number if owner else None)
+
+    def is_queued(self, strand: Strand) -> bool:
+        return strand in self._queued
+
+    def cancel(self, strand: Strand) -> None:
+        """N9: an ASSERT is aborted. Its instance ends as failed; if it is still queued it leaves the queue."""
+        if (entry := self._queued.pop(strand, None)) is not None:
+            self._unlink(entry)
+            self._notice("unqueued", situation=entry.situation.name, cause="cancelled")
+        elif (instance := self._awaited.pop(strand, None)) is not None:
+            instance.awaiter = None
+            self._end([(instance, False, "cancelled")])
+            self._complete(instance)
+
+    @staticmethod
+    def _unlink(entry: QueuedAssert) -> None:
+        del entry.situation.queue[entry.ticket]
+        if entry.owner is not None:
+            del entry.owner.queued[entry.ticket]
+
+    # -- SIT and the bodies it opens
+
+    def deliver(self, name: str, reaction: Reaction, *, opens: bool) -> Instance | None:
+        """The least recently served instance that this reaction may serve now (rule SIT).
+
+        If the delivery `opens` a body, the instance is in service until `leave`.
+        """
+        situation = self.named(name)
+        if (served := situation.reactions.get(reaction)) is None:
+            served = situation.reactions[reaction] = Served(deque(situation.instances.values()))
+        if situation.blocked:
+            return None
+        self._services += 1
+        instance = served.take(self._services)
+        if instance is not None:
+            self._notice("delivered", situation=name, instance=instance.number, guard=reaction[0])
+            if not opens:
+                served.give_back(instance)
+        return instance
+
+    def waits(self, name: str, reaction: Reaction, strand: Strand) -> None:
+        self.named(name).reactions[reaction].waiting.append(strand)
+
+    def left_waiting(self, name: str, reaction: Reaction, strand: Strand) -> None:
+        """N9: a SIT is aborted while it waits; a wake-up that it will not use goes to the next."""
+        situation = self.named(name)
+        if (served := situation.reactions.get(reaction)) is None:
+            return
+        if strand in served.waiting:
+            served.waiting.remove(strand)
+        else:
+            self._offer_to(situation, served)
+
+    def forget_guard(self, label: object) -> None:
+        """The reaction with this guard is gone: nobody waits at its SIT any more."""
+        for situation in self._by_name.values():
+            for reaction in [g for g in situation.reactions if g[0] == label]:
+                del situation.reactions[reaction]
+
+    def _offer(self, situation: Situation) -> None:
+        """Something may have become available: the first waiting strand of each reaction tries again."""
+        for served in situation.reactions.values():
+            self._offer_to(situation, served)
+
+    def _offer_to(self, situation: Situation, served: Served) -> None:
+        if served.waiting and (served.fresh or served.again) and not situation.blocked:
+            self._waker.wake(served.waiting.popleft())
+
+    def enter(self, instance: Instance, reaction: Reaction) -> None:
+        """{B}: a body of this instance is in service."""
+        instance.bodies += 1
+        self._notice("entered", situation=instance.situation.name, instance=instance.number, guard=reaction[0])
+
+    def leave(self, instance: Instance, reaction: Reaction) -> None:
+        """A body ended (or was aborted): the instance may be served again, or be complete."""
+        instance.bodies -= 1
+        situation = instance.situation
+        self._notice("left", situation=situation.name, instance=instance.number, guard=reaction[0])
+        if not instance.bodies and instance.status == "on" and (instance.withdrawn or situation.disabled):
+            self._end([(instance, False, "withdrawn" if instance.withdrawn else "assumption")])
+        if (served := situation.reactions.get(reaction)) is not None:
+            served.give_back(instance)
+            self._offer_to(situation, served)
+        self._complete(instance)
+
+    # -- how instances end
+
+    def finish(self, name: str, number: object, *, ok: bool) -> bool:
+        """SUCCEED or FAIL[s,k]: the first wins; False (and no effect) on a dead instance."""
+        instance = self.get(name, number)
+        if instance is None or instance.status != "on":
+            self._notice("late_verdict", situation=name, ok=ok)
+            return False
+        if instance.withdrawn and ok:
+            self._notice("success_withdrawn", situation=name, instance=instance.number)
+        cause = "withdrawn" if instance.withdrawn else "stub" if instance.stub else "failed"
+        self._end([(instance, ok and not instance.withdrawn, cause)])
+        self._complete(instance)
+        return True
+
+    def _end(self, ending: list[tuple[Instance, bool, str]]) -> None:
+        """Statuses are set, descendants cancelled, queued ASSERTs of the ended fail; who is complete returns."""
+        done: list[Instance] = []
+        while ending:
+            instance, ok, cause = ending.pop()
+            if instance.status != "on":
+                continue
+            instance.status = "ok" if ok else "ab"
+            instance.cause = "" if ok else cause
+            self._notice("ended", situation=instance.situation.name, instance=instance.number, ok=ok, cause=cause)
+            self._fail_queued(instance)
+            ending += [(child, False, "cancelled") for child in instance.children.values()]
+            done.append(instance)
+        for instance in reversed(done[1:]):
+            self._complete(instance)
+
+    def _fail_queued(self, owner: Instance) -> None:
+        for entry in list(owner.queued.values()):
+            self._unlink(entry)
+            del self._queued[entry.strand]
+            self._notice("unqueued", situation=entry.situation.name, cause="withdrawn")
+            self._waker.ended(entry.strand, False, (), "withdrawn")
+
+    def _complete(self, instance: Instance | None) -> None:
+        """Ended, with its bodies and descendants: the await returns; then the same for its owner."""
+        while instance is not None and instance.status != "on" and not instance.bodies and not instance.children:
+            if self._instances.pop(instance.number, None) is None:
+                return
+            situation, owner = instance.situation, instance.owner
+            del situation.instances[instance.number]
+            if owner is not None:
+                del owner.children[instance.number]
+            self._return(instance)
+            if not situation.instances:
+                self._quiescent(situation)
+            instance = owner
+
+    def _return(self, instance: Instance) -> None:
+        strand = instance.awaiter
+        self._notice("completed", situation=instance.situation.name, instance=instance.number)
+        if strand is None:
+            return
+        del self._awaited[strand]
+        owner = instance.owner
+        if instance.status == "ok" or not instance.again:
+            self._waker.ended(strand, instance.status == "ok", instance.values, instance.cause)
+        elif owner is not None and owner.gone:
+            self._waker.ended(strand, False, (), "withdrawn")
+        else:
+            self._waker.wake(strand)
+
+    # -- WAIT, INHIBIT, DRAIN and their like
+
+    def wait(self, kind: str, name: str, strand: Strand, owner: Hashable) -> None:
+        """WAIT, WAITINHIBIT or DRAIN begins; it is granted inside the step that makes s quiescent."""
+        situation = self.named(name)
+        situation.waiters.append((kind, strand, owner))
+        if kind == "DRAIN":
+            situation.drains.append(owner)
+            situation.held_back += 1
+            self._notice("draining", situation=name)
+            self._withdraw(situation)
+        if not situation.instances:
+            self._quiescent(situation)
+
+    def _withdraw(self, situation: Situation) -> None:
+        withdrawn = [i for i in situation.instances.values() if i.status == "on"]
+        for instance in withdrawn:  # grows while it is read: descendants follow their owners
+            instance.withdrawn = True
+            withdrawn += [c for c in instance.children.values() if c.status == "on" and not c.withdrawn]
+        for instance in withdrawn:
+            self._fail_queued(instance)
+        for instance in withdrawn:
+            if instance.status == "on" and not instance.bodies:
+                self._end([(instance, False, "withdrawn")])
+                self._complete(instance)
+
+    def _quiescent(self, situation: Situation) -> None:
+        waiters, situation.waiters = situation.waiters, []
+        for kind, strand, owner in waiters:
+            if kind == "DRAIN":
+                situation.drains.remove(owner)
+                situation.held_back -= 1
+                self._inhibit(situation, owner, "drain")
+            elif kind == "WAITINHIBIT":
+                self._inhibit(situation, owner, "inhibit")
+            self._waker.ended(strand, True, (), "")
+
+    def left_wait(self, name: str, strand: Strand, owner: Hashable) -> None:
+        """N9: a WAIT, WAITINHIBIT or DRAIN is aborted; a DRAIN lets its queue go."""
+        situation = self.named(name)
+        kind = next(kind for kind, waiting, _ in situation.waiters if waiting is strand)
+        situation.waiters = [w for w in situation.waiters if w[1] is not strand]
+        if kind == "DRAIN":
+            situation.drains.remove(owner)
+            situation.held_back -= 1
+            self._release(situation)
+
+    def inhibit(self, name: str, owner: Hashable, kind: Kind = "inhibit") -> None:
+        self._inhibit(self.named(name), owner, kind)
+
+    def _inhibit(self, situation: Situation, owner: Hashable, kind: Kind) -> None:
+        situation.inhibitions.append(Inhibition(owner, kind))
+        situation.held_back += kind != "inhibit"
+        situation.disabled += kind == "assumption"
+        self._notice("inhibited", situation=situation.name, owner=str(owner), because=kind)
+
+    def uninhibit(self, name: str, owner: Hashable) -> bool:
+        """Take away this owner's latest inhibition of s; False (and no effect) if it has none."""
+        situation = self.named(name)
+        for index in reversed(range(len(situation.inhibitions))):
+            held = situation.inhibitions[index]
+            if held.owner == owner:
+                del situation.inhibitions[index]
+                situation.held_back -= held.kind != "inhibit"
+                situation.disabled -= held.kind == "assumption"
+                self._notice("uninhibited", situation=name, owner=str(owner))
+                self._release(situation)
+                return True
+        self._notice("foreign_uninhibit", situation=name, owner=str(owner))
+        return False
+
+    def disable(self, name: str, assumption: str) -> None:
+        """A failed assumption: what is not in service ends as failed, new ASSERTs queue, nothing is delivered."""
+        situation = self.named(name)
+        if any(held.owner == ("assumption", assumption) for held in situation.inhibitions):
+            return
+        self._inhibit(situation, ("assumption", assumption), "assumption")
+        for instance in list(situation.instances.values()):
+            if instance.status == "on" and not instance.bodies:
+                self._end([(instance, False, "assumption")])
+                self._complete(instance)
+
+    def enable(self, name: str, assumption: str) -> bool:
+        return self.uninhibit(name, ("assumption", assumption))
+
+    def root_ended(self, owner: Hashable) -> None:
+        """What an owner still holds when it ends is released (law 5)."""
+        for situation in self._by_name.values():
+            while any(held.owner == owner for held in situation.inhibitions):
+                self.uninhibit(situation.name, owner)
+
+    def _release(self, situation: Situation) -> None:
+        if not situation.held_back:
+            for entry in list(situation.queue.values()):
+                self._unlink(entry)
+                del self._queued[entry.strand]
+                self._begin(situation, entry.arguments, entry.owner, entry.strand, entry.again)
+        self._offer(situation)

@@ -1,0 +1,364 @@
+"""The steps of the leaves: tests, delays, ports, situations, guards (`semantics.md`, Transitions).
+
+Each built-in process has one function here, named after its rule; `steps` offers every step of a
+configuration and `elapsed` lets time pass (TIME: all sides together, and only when nothing is urgent). A step
+gives the label that an observer sees and the configuration afterwards, settled.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from math import inf
+from typing import TypeAlias
+
+from planner_reactor.rs.evolves import Config, Label, World, settle
+from planner_reactor.rs.states import (
+    Await,
+    Bindings,
+    Delivered,
+    Ended,
+    Leaf,
+    Queued,
+    Reaction,
+    Run,
+    Serve,
+    Spawning,
+    Spot,
+    Testing,
+    Waiting,
+    bind,
+    parts_of,
+    with_parts,
+)
+from planner_reactor.rs.store import Store
+from planner_reactor.rs.terms import Value
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """One transition. `urgent` steps do not let time pass (maximal progress)."""
+
+    label: Label
+    after: Config
+    urgent: bool = True
+
+
+Result: TypeAlias = tuple[str, tuple[Value, ...], Run, Store]
+Rule: TypeAlias = Callable[[Leaf, Spot, Store, World], Result | None]
+
+OK = "ok"
+AB = "ab"
+WAITS = "wait"
+
+
+def steps(config: Config, world: World) -> Iterator[Step]:
+    """PAR, SEQ: every step of every component, one single change each; COM pairs included."""
+    spots = list(config.spots())
+    for spot in spots:
+        if not isinstance(spot.leaf, Leaf):
+            continue
+        if spot.leaf.problem:
+            yield _settled((spot.leaf.name, (), AB, ()), config.put(spot, Ended(False, cause="error")), world)
+        elif spot.leaf.name == "OUT":
+            yield from _communicated(spot, spots, config, world)
+        elif spot.leaf.name == "KILL":
+            yield from _killed(spot, spots, config, world)
+        elif spot.leaf.name == "POST":
+            yield from _posted(spot, spots, config, world)
+        elif (rule := RULES.get(spot.leaf.name)) is not None:
+            if (result := rule(spot.leaf, spot, config.store, world)) is not None:
+                status, values, term, store = result
+                after = replace(config.put(spot, term), store=store)
+                yield _settled((spot.leaf.name, spot.leaf.arguments, status, values), after, world)
+        elif spot.leaf.name not in PASSIVE:
+            yield from _ended(spot, spot.leaf, config, world)
+
+
+def _settled(label: Label, after: Config, world: World, *, urgent: bool = True) -> Step:
+    return Step(label, settle(after, world), urgent)
+
+
+# ------------------------------------------------------------------------------------------------------- ports
+
+
+def _communicated(writer: Spot, spots: list[Spot], config: Config, world: World) -> Iterator[Step]:
+    """COM. `p!v` meets `p?v`: one reader per write; any ready pair may meet."""
+    assert isinstance(writer.leaf, Leaf)
+    port, value = writer.leaf.arguments
+    for reader in _named(spots, "IN", (port,)):
+        assert isinstance(reader.leaf, Leaf)
+        after = config.put(writer, Ended(True)).put(reader, Ended(True, _results(reader.leaf, (value,))))
+        yield _settled(("COM", (port, value), OK, ()), after, world)
+
+
+# ----------------------------------------------------------------------------------- basic processes and time
+
+
+def window(leaf: Leaf, world: World) -> tuple[float, float]:
+    """The ages, in seconds, at which this process may end; (inf, inf) if only another process can end it."""
+    match leaf.name:
+        case "Delay":
+            return _seconds(leaf), _seconds(leaf)
+        case "SUSPEND":
+            return _seconds(leaf) / 1000, _seconds(leaf) / 1000
+        case "Term":
+            return 0.0, _seconds(leaf)
+        case name if name in RULES or name in PASSIVE or name in ("OUT", "KILL", "POST"):
+            return inf, inf
+    signature = world.signatures.get(leaf.name)
+    return signature.window if signature is not None and signature.window is not None else (0.0, 0.0)
+
+
+def _seconds(leaf: Leaf) -> float:
+    value = leaf.arguments[0] if leaf.arguments else None
+    return max(0.0, float(value)) if _is_number(value) else 0.0  # type: ignore[arg-type]
+
+
+def _is_number(value: Value) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool)
+
+
+def _ended(spot: Spot, leaf: Leaf, config: Config, world: World) -> Iterator[Step]:
+    """`tau:ΩB`, `tau:℧B` inside the window; urgent only at its end."""
+    low, high = window(leaf, world)
+    if not low <= leaf.age <= high:
+        return
+    for ok, values in _endings(leaf, world):
+        term = Ended(ok, _results(leaf, values), "" if ok else "failed")
+        label = (leaf.name, leaf.arguments, OK if ok else AB, values)
+        yield _settled(label, config.put(spot, term), world, urgent=leaf.age >= high)
+
+
+def _endings(leaf: Leaf, world: World) -> Iterator[tuple[bool, tuple[Value, ...]]]:
+    if leaf.name in ("Delay", "SUSPEND", "Term"):
+        yield (True, ()) if leaf.arguments and _is_number(leaf.arguments[0]) else (False, ())
+    elif leaf.name in TESTS:
+        yield TESTS[leaf.name](*leaf.arguments), ()
+    else:
+        yield from world.endings(leaf.name, leaf.arguments)
+
+
+def _results(leaf: Leaf, values: tuple[Value, ...]) -> Bindings:
+    return bind(tuple(zip(leaf.results, values, strict=False)))
+
+
+def _greater(a: Value, b: Value) -> bool:
+    return _is_number(a) and _is_number(b) and a > b  # type: ignore[operator]
+
+
+def equal(a: Value, b: Value, tolerance: Value = 1e-9) -> bool:
+    """Equal, within a tolerance where both are numbers."""
+    if _is_number(a) and _is_number(b) and _is_number(tolerance):
+        return abs(a - b) <= tolerance  # type: ignore[operator]
+    return a == b
+
+
+TESTS: dict[str, Callable[..., bool]] = {"GTR": _greater, "LST": lambda a, b: _greater(b, a), "Equal": equal}
+
+
+def slack(config: Config, world: World) -> float:
+    """The longest time that may pass from here: 0 if something is urgent, inf if nothing will end by
+    itself."""
+    longest = inf
+    for spot in config.spots():
+        if isinstance(spot.leaf, Leaf):
+            longest = min(longest, max(0.0, window(spot.leaf, world)[1] - spot.leaf.age))
+    if longest > 0 and any(step.urgent for step in steps(config, world)):
+        return 0.0
+    return longest
+
+
+def elapsed(config: Config, seconds: float) -> Config:
+    """TIME: the same configuration, `seconds` later."""
+    return replace(config, roots=tuple((n, _older(t, seconds)) for n, t in config.roots))
+
+
+def _older(term: Run, seconds: float) -> Run:
+    if isinstance(term, Leaf):
+        return replace(term, age=round(term.age + seconds, 9))
+    parts = parts_of(term)
+    return with_parts(term, tuple(_older(p, seconds) for p in parts)) if parts else term
+
+
+# -------------------------------------------------------------------------------------------------- situations
+
+
+def assert_(leaf: Leaf, spot: Spot, store: Store, world: World) -> Result | None:
+    """ASSERT, REASSERT: a new instance, owned by the instance whose body this is."""
+    situation, *rest = leaf.arguments
+    if not isinstance(situation, str):
+        return AB, (), Ended(False, cause="error"), store
+    arguments = tuple(rest)
+    if store.gone(spot.owner):
+        return AB, (), Ended(False, cause="withdrawn"), store
+    if situation not in world.spawned and store.above(spot.owner, situation):
+        return AB, (), Ended(False, cause="error"), store
+    if store.holds_back(situation):
+        store, ticket = store.queued(situation, arguments, spot.owner)
+        return WAITS, (), Queued(ticket, leaf), store
+    store, number = store.asserted(situation, arguments, spot.owner)
+    return WAITS, (), Await(number, leaf.results, leaf if leaf.name == "REASSERT" else None), store
+
+
+def sit(leaf: Leaf, spot: Spot, store: Store, world: World) -> Result | None:
+    """SIT: deliver the least recently served instance that this reaction may serve."""
+    situation = str(leaf.arguments[0])
+    reaction = Reaction(spot.guard, leaf.site)
+    instance = store.available(situation, reaction)
+    if instance is None:
+        return None
+    values = (instance.number, *instance.arguments)
+    bindings = _results(leaf, values)
+    store = store.stamped(instance.number, reaction)
+    if leaf.opens:
+        return OK, values, Delivered(situation, instance.number, reaction, bindings), store
+    return OK, values, Ended(True, bindings), store
+
+
+def succeed(leaf: Leaf, spot: Spot, store: Store, world: World) -> Result | None:
+    return OK, (), Ended(True), _ended_instance(leaf, store, ok=True)
+
+
+def fail(leaf: Leaf, spot: Spot, store: Store, world: World) -> Result | None:
+    return OK, (), Ended(True), _ended_instance(leaf, store, ok=False)
+
+
+def _ended_instance(leaf: Leaf, store: Store, *, ok: bool) -> Store:
+    situation, number = leaf.arguments
+    instance = store.get(number) if isinstance(number, int) else None
+    return store.ended(instance.number, ok=ok) if instance and instance.situation == situation else store
+
+
+def update(leaf: Leaf, spot: Spot, store: Store, world: World) -> Result | None:
+    """UPDATE[s,k,v…]: the values that ASSERT will return."""
+    situation, number, *values = leaf.arguments
+    instance = store.get(number) if isinstance(number, int) else None
+    if instance and instance.situation == situation and instance.status == "on":
+        store = store.changed(instance.number, values=tuple(values))
+    return OK, (), Ended(True), store
+
+
+def wait(leaf: Leaf, spot: Spot, store: Store, world: World) -> Result | None:
+    """WAIT, WAITINHIBIT: their start; granted inside the step that makes the situation quiescent."""
+    return WAITS, (), Waiting(leaf.name, str(leaf.arguments[0])), store
+
+
+def drain(leaf: Leaf, spot: Spot, store: Store, world: World) -> Result | None:
+    situation = str(leaf.arguments[0])
+    return WAITS, (), Waiting("DRAIN", situation), store.drain(situation, spot.root)
+
+
+def inhibit(leaf: Leaf, spot: Spot, store: Store, world: World) -> Result | None:
+    return OK, (), Ended(True), store.inhibit(str(leaf.arguments[0]), spot.root, "inhibit")
+
+
+def uninhibit(leaf: Leaf, spot: Spot, store: Store, world: World) -> Result | None:
+    return OK, (), Ended(True), store.uninhibit(str(leaf.arguments[0]), spot.root)
+
+
+def disable(leaf: Leaf, spot: Spot, store: Store, world: World) -> Result | None:
+    """What a failed assumption does to a situation that rests on it."""
+    situation, assumption = str(leaf.arguments[0]), str(leaf.arguments[1])
+    owner = ("assumption", assumption)
+    if any(h.situation == situation and h.owner == owner for h in store.inhibitions):
+        return OK, (), Ended(True), store
+    return OK, (), Ended(True), store.inhibit(situation, owner, "assumption")
+
+
+def enable(leaf: Leaf, spot: Spot, store: Store, world: World) -> Result | None:
+    situation, assumption = str(leaf.arguments[0]), str(leaf.arguments[1])
+    return OK, (), Ended(True), store.uninhibit(situation, ("assumption", assumption))
+
+
+def stub(leaf: Leaf, spot: Spot, store: Store, world: World) -> Result | None:
+    """STUB[s]: the failure that follows is known to come from a placeholder."""
+    return OK, (), Ended(True), store if spot.owner is None else store.changed(spot.owner, stub=True)
+
+
+def report(leaf: Leaf, spot: Spot, store: Store, world: World) -> Result | None:
+    return OK, (), Ended(True), store
+
+
+# ------------------------------------------------------------------------------------------------------ guards
+
+
+def _posted(poster: Spot, spots: list[Spot], config: Config, world: World) -> Iterator[Step]:
+    """`POST[n]` meets `ADD<m>`: m becomes n. A label in use is refused."""
+    assert isinstance(poster.leaf, Leaf)
+    label = poster.leaf.arguments[0]
+    if _named(spots, "E", (label,)):
+        yield _settled(("POST", (label,), AB, ()), config.put(poster, Ended(False, cause="error")), world)
+        return
+    for adder in _named(spots, "ADD", ()):
+        assert isinstance(adder.leaf, Leaf)
+        after = config.put(poster, Ended(True)).put(adder, Ended(True, _results(adder.leaf, (label,))))
+        yield _settled(("POST", (label,), OK, ()), after, world)
+
+
+def _named(spots: list[Spot], name: str, arguments: tuple[Value, ...]) -> list[Spot]:
+    return [
+        s for s in spots
+        if isinstance(s.leaf, Leaf) and s.leaf.name == name and not s.leaf.problem and s.leaf.arguments == arguments
+    ]  # fmt: skip
+
+
+def _killed(killer: Spot, spots: list[Spot], config: Config, world: World) -> Iterator[Step]:
+    """`KILL[n]` meets `E[n]`, when no body of n's reaction is in service; an absent guard is an error."""
+    assert isinstance(killer.leaf, Leaf)
+    label = killer.leaf.arguments[0]
+    found = _named(spots, "E", (label,))
+    if not found:
+        yield _settled(("KILL", (label,), AB, ()), config.put(killer, Ended(False, cause="error")), world)
+    for guard in found:
+        group = config.root(guard.root)
+        for index in guard.path[:-1]:
+            group = parts_of(group)[index]
+        if all(resting(p) for i, p in enumerate(parts_of(group)) if i != guard.path[-1]):
+            after = config.put(killer, Ended(True)).put(guard, Ended(True))
+            yield _settled(("KILL", (label,), OK, ()), after, world)
+
+
+def resting(term: Run, *, sensing: bool = False) -> bool:
+    """Is nothing of this reaction in service? It waits for a situation, or senses in the condition of a
+    loop."""
+    match term:
+        case Serve():
+            return False
+        case Ended() | Queued():
+            return True
+        case Leaf():
+            return sensing or term.name in RESTING
+        case Await() | Waiting():
+            return sensing
+        case Testing():
+            return resting(term.condition, sensing=True)
+        case Spawning():
+            return resting(term.condition, sensing=True) and all(resting(b, sensing=sensing) for b in term.bodies)
+        case _:
+            return all(resting(p, sensing=sensing) for p in parts_of(term))
+
+
+RULES: dict[str, Rule] = {
+    "ASSERT": assert_,
+    "REASSERT": assert_,
+    "SIT": sit,
+    "SUCCEED": succeed,
+    "FAIL": fail,
+    "UPDATE": update,
+    "WAIT": wait,
+    "WAITINHIBIT": wait,
+    "DRAIN": drain,
+    "INHIBIT": inhibit,
+    "UNINHIBIT": uninhibit,
+    "DISABLE": disable,
+    "ENABLE": enable,
+    "STUB": stub,
+    "REPORT": report,
+}
+
+PASSIVE = frozenset({"NIL", "IN", "E", "ADD", "ASSUMONITOR", "HOLDMONITOR"})
+"""Leaves that have no step of their own."""
+
+RESTING = frozenset({"NIL", "E", "ADD", "SIT", "ASSUMONITOR", "HOLDMONITOR"})
+"""Leaves at which a reaction may be removed: nothing has begun."""

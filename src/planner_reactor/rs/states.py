@@ -1,0 +1,326 @@
+"""Run-time terms: what a process has become while it runs (`semantics.md`, "Run-time terms and store").
+
+`evolves` rewrites these terms. Legend, with the notation of the rules on the left:
+
+    ok.r, ab.r      Ended       terminated, with bindings r
+    a leaf          Leaf        a basic or built-in process that has come to life, with its age
+    await_{s,k}<x>  Await       an ASSERT (or REASSERT) that waits for its instance
+    –               Queued      an ASSERT held back while its situation is drained or disabled
+    –               Waiting     a WAIT, WAITINHIBIT or DRAIN that has begun
+    P;Q  P:Q        Chain       the part that runs, and what is still to come
+    r>T             Keep        bindings kept for the outside
+    [T]_A, [T]_{r→y} Export     only these results leave, under these names
+    {T}_{s,k,g}     Serve       a body of instance k of s, served by reaction g
+    A:;B            Testing, Round
+    A::B            Spawning
+
+A continuation that has not begun is source text with the bindings in scope, `Bindings` restricted to the
+names that it uses, so that equal states are equal values.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
+from functools import lru_cache
+from typing import Literal, TypeAlias
+
+from planner_reactor.errors import Place
+from planner_reactor.rs.terms import (
+    Apply,
+    Call,
+    Expression,
+    If,
+    Loop,
+    Negative,
+    Operation,
+    Process,
+    Spawn,
+    Value,
+    Variable,
+    calls,
+)
+
+Bindings: TypeAlias = tuple[tuple[str, Value], ...]
+"""Names and values, sorted by name."""
+
+
+class InstanceNumber(int):
+    """The number k of a situation instance: an integer that an explorer may rename consistently."""
+
+
+@dataclass(frozen=True, slots=True)
+class Reaction:
+    """The identity g of a reaction: the label of its guard, if any, and where its SIT stands in the text."""
+
+    guard: Value | None
+    site: Place | None
+
+
+@dataclass(frozen=True, slots=True)
+class Ended:
+    """`ok.r` or `ab.r`. The cause is for traces and perceptions; the algebra sees only the outcome."""
+
+    ok: bool
+    bindings: Bindings = ()
+    cause: str = field(default="", compare=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Delivered:
+    """A SIT that has just delivered an instance: what follows it, if anything, is the instance's body."""
+
+    situation: str
+    instance: InstanceNumber
+    reaction: Reaction
+    bindings: Bindings
+
+
+@dataclass(frozen=True, slots=True)
+class Leaf:
+    """A basic or built-in process that has come to life.
+
+    `age` in seconds; `opens` marks a SIT whose instance is served by what follows it; `problem` says why its
+    arguments have no value.
+    """
+
+    name: str
+    arguments: tuple[Value, ...] = ()
+    results: tuple[str, ...] = ()
+    age: float = 0.0
+    site: Place | None = None
+    opens: bool = False
+    problem: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Await:
+    """`await_{s,k}<x>`; `again` holds the leaf of a REASSERT, to be repeated should the instance fail."""
+
+    instance: InstanceNumber
+    results: tuple[str, ...]
+    again: Leaf | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Queued:
+    """An ASSERT held back: `ticket` finds it in the store's queue."""
+
+    ticket: InstanceNumber
+    leaf: Leaf
+
+
+@dataclass(frozen=True, slots=True)
+class Waiting:
+    """A WAIT, WAITINHIBIT or DRAIN that has begun."""
+
+    name: str
+    situation: str
+
+
+@dataclass(frozen=True, slots=True)
+class Chain:
+    operator: Literal[";", ":"]
+    current: Run
+    rest: Process
+    scope: Bindings
+
+
+@dataclass(frozen=True, slots=True)
+class Keep:
+    bindings: Bindings
+    body: Run
+
+
+@dataclass(frozen=True, slots=True)
+class Export:
+    """Only the `renamed` results (inner name, outer name) leave the body; none, for the body of a loop."""
+
+    renamed: tuple[tuple[str, str], ...]
+    body: Run
+
+
+@dataclass(frozen=True, slots=True)
+class Group:
+    operator: Literal["|", "&", "#"]
+    parts: tuple[Run, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Inverted:
+    body: Run
+
+
+@dataclass(frozen=True, slots=True)
+class Deciding:
+    test: Run
+    branches: If
+    scope: Bindings
+
+
+@dataclass(frozen=True, slots=True)
+class Testing:
+    """`A:;B` while A runs."""
+
+    condition: Run
+    loop: Loop
+    scope: Bindings
+
+
+@dataclass(frozen=True, slots=True)
+class Round:
+    """`A:;B` while B runs."""
+
+    body: Run
+    loop: Loop
+    scope: Bindings
+
+
+@dataclass(frozen=True, slots=True)
+class Spawning:
+    """`A::B`: A runs, or has ended, beside the bodies spawned so far; `stopped` if an ended body has
+    stopped."""
+
+    condition: Run
+    loop: Spawn
+    scope: Bindings
+    bodies: tuple[Run, ...] = ()
+    stopped: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Serve:
+    situation: str
+    instance: InstanceNumber
+    reaction: Reaction
+    body: Run
+
+
+Run: TypeAlias = (
+    Ended | Delivered | Leaf | Await | Queued | Waiting | Chain | Keep | Export | Group | Inverted | Deciding
+    | Testing | Round | Spawning | Serve
+)  # fmt: skip
+
+Path: TypeAlias = tuple[int, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Spot:
+    """A live leaf of a configuration: where it is, and what encloses it."""
+
+    root: int
+    path: Path
+    leaf: Run
+    guard: Value | None = None
+    owner: InstanceNumber | None = None
+
+
+def parts_of(term: Run) -> tuple[Run, ...]:
+    """The live components of a run-time term, left to right."""
+    match term:
+        case Ended() | Delivered() | Leaf() | Await() | Queued() | Waiting():
+            return ()
+        case Group(_, parts):
+            return parts
+        case Spawning(condition, _, _, bodies):
+            return (condition, *bodies)
+        case Chain(_, current) | Testing(current) | Deciding(current):
+            return (current,)
+        case Keep(_, body) | Export(_, body) | Inverted(body) | Round(body) | Serve(body=body):
+            return (body,)
+
+
+def with_parts(term: Run, parts: tuple[Run, ...]) -> Run:
+    """The same term with other live components."""
+    match term:
+        case Group(operator):
+            return Group(operator, parts)
+        case Spawning():
+            return replace(term, condition=parts[0], bodies=parts[1:])
+        case Chain():
+            return replace(term, current=parts[0])
+        case Testing():
+            return replace(term, condition=parts[0])
+        case Deciding():
+            return replace(term, test=parts[0])
+        case Keep() | Export() | Inverted() | Round() | Serve():
+            return replace(term, body=parts[0])
+        case _:
+            return term
+
+
+def put(term: Run, path: Path, new: Run) -> Run:
+    """The term with `new` at `path`."""
+    if not path:
+        return new
+    parts = parts_of(term)
+    changed = put(parts[path[0]], path[1:], new)
+    return with_parts(term, (*parts[: path[0]], changed, *parts[path[0] + 1 :]))
+
+
+def guard_of(term: Run) -> Value | None:
+    """The label n of an `E[n] # …`, else None."""
+    if isinstance(term, Group) and term.operator == "#":
+        for part in term.parts:
+            if isinstance(part, Leaf) and part.name == "E" and part.arguments:
+                return part.arguments[0]
+    return None
+
+
+def spots(
+    term: Run,
+    root: int = 0,
+    path: Path = (),
+    guard: Value | None = None,
+    owner: InstanceNumber | None = None,
+) -> Iterator[Spot]:
+    """Every live leaf, left to right, with the guard and the instance that enclose it."""
+    match term:
+        case Leaf() | Await() | Queued() | Waiting():
+            yield Spot(root, path, term, guard, owner)
+        case Ended() | Delivered():
+            return
+        case _:
+            label = guard_of(term)
+            guard = guard if label is None else label
+            owner = term.instance if isinstance(term, Serve) else owner
+            for index, part in enumerate(parts_of(term)):
+                yield from spots(part, root, (*path, index), guard, owner)
+
+
+# ----------------------------------------------------------------------------------------------- bindings
+
+
+def bind(*many: Bindings) -> Bindings:
+    """r + r' + …: later ones win."""
+    merged: dict[str, Value] = {}
+    for bindings in many:
+        merged.update(bindings)
+    return tuple(sorted(merged.items()))
+
+
+def only(bindings: Bindings, names: frozenset[str]) -> Bindings:
+    return tuple(b for b in bindings if b[0] in names)
+
+
+@lru_cache(maxsize=4096)
+def variables(process: Process) -> frozenset[str]:
+    """The names of all variables that occur in a process."""
+    found: set[str] = set()
+    waiting: list[Expression] = [a for call in calls(process) for a in call.arguments]
+    while waiting:
+        match waiting.pop():
+            case Variable(name):
+                found.add(name)
+            case Negative(operand):
+                waiting.append(operand)
+            case Operation(_, left, right):
+                waiting += [left, right]
+            case Apply(_, arguments):
+                waiting += arguments
+    return frozenset(found)
+
+
+def leaf_of(call: Call, arguments: tuple[Value, ...] = (), *, problem: str = "") -> Leaf:
+    """The leaf that a call of a basic or built-in process becomes."""
+    return Leaf(call.name, arguments, call.results, site=call.place, problem=problem)
