@@ -79,16 +79,27 @@ OPERATOR_OF = MappingProxyType({o.term: o for o in PROCESS_OPERATORS})
 
 TOKEN = re.compile(
     r"""
-      (?P<blank>   (?: \s+ | //[^\n]* )+ )
-    | (?P<name>    [^\W\d] \w* )
-    | (?P<number>  \d+ (?: \.\d+ )? (?: [eE][+-]?\d+ )? (?! [\w.] ) )
-    | (?P<text>    " (?: [^"\\\n] | \\. )* " )
-    | (?P<sign>    :; | :: | == | /= | <= | >= | [][()<>,=|&;:\#~+*/-] )
-    | (?P<wrong>   . )
+    (?: \s++ | //[^\n]*+ )*+
+    (?: (?P<name>    [^\W\d] \w* )
+      | (?P<number>  [0-9]+ (?: \.[0-9]+ )? (?: [eE][+-]?[0-9]+ )? (?! [\w.] ) )
+      | (?P<text>    " (?: [^"\\\n] | \\. )* " )
+      | (?P<sign>    :; | :: | == | /= | <= | >= | [][()<>,=|&;:\#~+*/-] )
+      | (?P<end>     \Z )
+      | (?P<wrong>   . )
+    )
     """,
     re.VERBOSE,
 )
-"""What a text is cut into. Strings are written as in JSON."""
+"""One token, after blanks and comments. Strings are written as in JSON."""
+
+DEFINITION = re.compile(
+    r"""
+    ^ (?! (?: if | then | else ) \b ) [^\W\d]\w*+ [ ]*+
+    (?: \[ [^]\n]{0,200} \] [ ]*+ )? (?: < [^>\n]{0,200} > [ ]*+ )? = (?! = )
+    """,
+    re.VERBOSE | re.MULTILINE,
+)
+"""A line that begins a definition in its first column: where reading goes on after an error."""
 
 
 def stands_bare(operand: Process, below: Process) -> bool:
