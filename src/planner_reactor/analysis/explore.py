@@ -7,7 +7,6 @@ with a *shortest* path. This is the plain reading of `rs.evolves`: no reduction,
 
 from __future__ import annotations
 
-from collections import deque
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, fields, is_dataclass, replace
 from math import inf
@@ -20,8 +19,6 @@ from planner_reactor.rs.states import InstanceNumber, Leaf
 Invariant = Callable[[Config, Step], bool]
 """Asked with the configuration before a step and the step: does the law hold?"""
 
-TIME: Label = ("TIME", (), "ok", ())
-
 
 @dataclass(frozen=True, slots=True)
 class Violation:
@@ -33,14 +30,44 @@ class Violation:
 
 @dataclass(frozen=True, slots=True)
 class Exploration:
-    """What was found. `complete` is False if the limit on states was reached first."""
+    """Every state reached, in the order of a shortest way to it, with its moves (label, number of the next state).
 
-    states: int
-    transitions: int
-    deadlocks: tuple[tuple[Label, ...], ...]
+    `complete` is False if the limit on states was reached, or a violation stopped the exploration, first.
+    """
+
+    states: tuple[Config, ...] = field(repr=False)
+    moves: tuple[tuple[tuple[Label, int], ...], ...] = field(repr=False)
     violations: tuple[Violation, ...]
-    ends: frozenset[Config] = field(repr=False)
-    complete: bool = True
+    complete: bool
+    came_from: Mapping[int, tuple[int, Label]] = field(repr=False)
+
+    @property
+    def ends(self) -> tuple[int, ...]:
+        """The states that nothing leaves."""
+        return tuple(n for n, moves in enumerate(self.moves) if not moves)
+
+    def path(self, state: int) -> tuple[Label, ...]:
+        """The labels of a shortest way from the first state."""
+        labels: list[Label] = []
+        while state in self.came_from:
+            state, label = self.came_from[state]
+            labels.append(label)
+        return tuple(reversed(labels))
+
+    def trapped(self, goal: Callable[[Config], bool]) -> int | None:
+        """The first state from which no state with the goal can be reached any more, or None."""
+        before: dict[int, list[int]] = {}
+        for n, moves in enumerate(self.moves):
+            for _, after in moves:
+                before.setdefault(after, []).append(n)
+        reaching = {n for n, state in enumerate(self.states) if goal(state)}
+        waiting = list(reaching)
+        while waiting:
+            for n in before.get(waiting.pop(), ()):
+                if n not in reaching:
+                    reaching.add(n)
+                    waiting.append(n)
+        return next((n for n in range(len(self.states)) if n not in reaching), None)
 
 
 def explore(
@@ -51,47 +78,39 @@ def explore(
     limit: int = 50_000,
     stop_at_violation: bool = True,
 ) -> Exploration:
-    """Explore from `start`. A deadlock is a state without steps in which a root has not ended."""
-    laws = laws or {}
-    first = canonical(start)
-    came_from: dict[Config, tuple[Config, Label] | None] = {first: None}
-    waiting = deque([first])
-    transitions = 0
-    deadlocks: list[tuple[Label, ...]] = []
+    """Explore from `start`, asking every law at every step."""
+    states = [canonical(start)]
+    numbers = {states[0]: 0}
+    came_from: dict[int, tuple[int, Label]] = {}
+    moves: list[tuple[tuple[Label, int], ...]] = []
     violations: list[Violation] = []
-    ends: set[Config] = set()
-    while waiting:
-        state = waiting.popleft()
-        moves = list(successors(state, world))
-        transitions += len(moves)
-        if not moves:
-            ends.add(state)
-            if any(True for _ in state.spots()):
-                deadlocks.append(_path(state, came_from))
-        for step in moves:
-            broken = [name for name, law in laws.items() if not law(state, step)]
-            violations += [Violation(name, (*_path(state, came_from), step.label)) for name in broken]
-            if broken and stop_at_violation:
-                return Exploration(len(came_from), transitions, tuple(deadlocks), tuple(violations), frozenset(ends))
+    for here, state in enumerate(states):  # grows while it is read
+        found = []
+        for step in successors(state, world):
             after = canonical(step.after)
-            if after not in came_from:
-                if len(came_from) >= limit:
-                    return Exploration(
-                        limit, transitions, tuple(deadlocks), tuple(violations), frozenset(ends), complete=False
-                    )
-                came_from[after] = (state, step.label)
-                waiting.append(after)
-    return Exploration(len(came_from), transitions, tuple(deadlocks), tuple(violations), frozenset(ends))
+            if (number := numbers.setdefault(after, len(states))) == len(states):
+                states.append(after)
+                came_from[number] = (here, step.label)
+            found.append((step.label, number))
+            broken = [name for name, law in (laws or {}).items() if not law(state, step)]
+            if broken:
+                so_far = Exploration((), (), (), False, came_from).path(here)
+                violations += [Violation(name, (*so_far, step.label)) for name in broken]
+        moves.append(tuple(found))
+        if (violations and stop_at_violation) or len(states) > limit:
+            return Exploration(tuple(states), tuple(moves), tuple(violations), False, came_from)
+    return Exploration(tuple(states), tuple(moves), tuple(violations), True, came_from)
 
 
 def successors(config: Config, world: World) -> Iterator[Step]:
     """Every step, and the passing of time to the next end of an age window if nothing is urgent."""
-    yield from (moves := list(steps(config, world)))
-    longest = slack(config, world)
-    if longest > 0 and not any(m.urgent for m in moves):
-        pause = min((d for d in _boundaries(config, world) if d > 0), default=inf)
-        if pause < inf:
-            yield Step(TIME, elapsed(config, min(pause, longest)))
+    moves = list(steps(config, world))
+    yield from moves
+    if any(move.urgent for move in moves):
+        return
+    pause = min((d for d in _boundaries(config, world) if d > 0), default=inf)
+    if (pause := min(pause, slack(config, world))) < inf:
+        yield Step(("TIME", (pause,), "ok", ()), elapsed(config, pause))
 
 
 def _boundaries(config: Config, world: World) -> Iterator[float]:

@@ -198,11 +198,11 @@ def _needed(process: Process, scope: Bindings) -> Bindings:
 def terminate(term: Run, store: Store, world: World, root: int) -> tuple[Run, Store]:
     """The term with every ending drawn that follows at once; an ended part of a `#` is left for `decide`."""
     if parts := parts_of(term):
-        after: list[Run] = []
-        for part in parts:
-            part, store = terminate(part, store, world, root)
-            after.append(part)
-        term = with_parts(term, tuple(after))
+        after = list(parts)
+        for index, part in enumerate(parts):
+            after[index], store = terminate(part, store, world, root)
+        if any(new is not old for new, old in zip(after, parts, strict=True)):
+            term = with_parts(term, tuple(after))
     match term:
         # N1  ok.r;Q = ab.r;Q = r>Q[r]
         case Chain(";", Ended(_, r), rest, scope):
@@ -280,6 +280,8 @@ def _spawning(term: Spawning, store: Store, world: World) -> tuple[Run, Store]:
             new, store = _served(d, term.loop.body, term.scope, store, world)
         case Ended(False, r, cause) if not bodies:
             return Ended(stopped, r, "" if stopped else cause), store
+        case _ if len(bodies) == len(term.bodies):
+            return term, store
         case _:
             return replace(term, bodies=bodies, stopped=stopped), store
     again = _begin_left(term.loop.condition, term.scope, world)
@@ -337,18 +339,18 @@ def settle(config: Config, world: World) -> Config:
 
 
 def _quiet(config: Config, world: World) -> Config:
-    while True:
-        roots, store = [], config.store
-        for number, term in config.roots:
-            store = store.settled()
+    roots, store = list(config.roots), config.store
+    changed = True
+    while changed:
+        changed = False
+        for index, (number, term) in enumerate(roots):
+            before, store = store, store.settled()
             new, store = terminate(term, store, world, number)
-            if isinstance(new, Ended) and not isinstance(term, Ended):
+            if isinstance(new, Ended):
                 store = store.root_ended(number)
-            roots.append((number, new))
-        after = Config(tuple(roots), store.settled())
-        if after == config:
-            return after
-        config = after
+            changed = changed or new is not term or store is not before
+            roots[index] = (number, new)
+    return Config(tuple(roots), store)
 
 
 def _undecided(term: Run, depth: int = 0) -> Iterator[tuple[int, tuple[int, ...]]]:
@@ -389,7 +391,9 @@ def abort(term: Run, store: Store, root: int) -> Store:
         case _:
             for part in parts_of(term):
                 store = abort(part, store, root)
-            return store.left(term.instance, term.reaction) if isinstance(term, Serve) else store
+            if isinstance(term, Serve):
+                store = replace(store.left(term.instance, term.reaction), cut=store.cut + 1)
+            return store
 
 
 def spawned_situations(program: Program, *processes: Process) -> frozenset[str]:

@@ -158,15 +158,12 @@ TESTS: dict[str, Callable[..., bool]] = {"GTR": _greater, "LST": lambda a, b: _g
 
 
 def slack(config: Config, world: World) -> float:
-    """The longest time that may pass from here: 0 if something is urgent, inf if nothing will end by
-    itself."""
-    longest = inf
-    for spot in config.spots():
-        if isinstance(spot.leaf, Leaf):
-            longest = min(longest, max(0.0, window(spot.leaf, world)[1] - spot.leaf.age))
-    if longest > 0 and any(step.urgent for step in steps(config, world)):
-        return 0.0
-    return longest
+    """The longest time that may pass before an age window closes: inf if nothing will end by itself.
+
+    None may pass while a step is urgent (maximal progress): ask `steps`.
+    """
+    leaves = (spot.leaf for spot in config.spots())
+    return min((window(i, world)[1] - i.age for i in leaves if isinstance(i, Leaf)), default=inf)
 
 
 def elapsed(config: Config, seconds: float) -> Config:

@@ -67,6 +67,7 @@ class Store:
     run: tuple[tuple[InstanceNumber, Reaction], ...] = ()  # bodies in service
     served: tuple[tuple[Reaction, InstanceNumber], ...] = ()  # last served last
     next_number: int = 1
+    cut: int = 0  # bodies aborted from outside: a safe adaptation leaves it at 0 (law 2)
 
     # -- questions
 
@@ -246,7 +247,7 @@ class Store:
     def settled(self) -> Store:
         """The consequences that belong to the same step, to the end."""
         store = self
-        while (after := store._once_settled()) != store:
+        while (after := store._once_settled()) is not store:
             store = after
         return store
 
