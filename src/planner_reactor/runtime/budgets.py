@@ -1,0 +1,29 @@
+"""Bounds on what a program may use up, so that no text can eat the machine (reactor's law 13).
+
+Reaching one is not an error of the executer: it aborts the nearest enclosing served body with cause
+`budget`, and the statistics name the definition. What no body encloses is a root; a root is never aborted
+by its budget of steps: its next round waits one quantum (semantics.md, STREAM).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from planner_reactor.rs.prelude import QUANTUM
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Budgets:
+    """`rounds`: calls and rounds of loops of one served body, or of one root, at one instant (the Zeno
+    budget).
+
+    `quantum`: seconds that a root waits once it has used them up. `processes`: strands alive at once.
+    `depth`: calls within calls of one strand that are not tail calls. `slice`: instructions that a strand
+    runs before it goes to the end of the queue (1: a step each, first in first out).
+    """
+
+    rounds: int = 100_000
+    quantum: float = QUANTUM
+    processes: int = 1_000_000
+    depth: int = 100_000
+    slice: int = 64

@@ -1,0 +1,271 @@
+"""The silent instructions: calls, returns, loops, forks, and the ends of what they began.
+
+`;` `:` `~` and `if` need none: they are compiled into where a process goes on when it stops (`ok`) and when
+it aborts (`ab`). A call that is no tail call pushes one tuple; a tail call, a loop and a round push none,
+so that they run in constant space. Rounds and calls are counted for the Zeno budget: no process is without
+end that has neither.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from planner_reactor.rs.expressions import EvaluationError
+from planner_reactor.rs.terms import Value
+from planner_reactor.runtime.definitions import Definition
+from planner_reactor.runtime.kernel import Kernel
+from planner_reactor.runtime.outcomes import OpensBody
+from planner_reactor.runtime.strands import UNBOUND, Body, Frame, Instruction, Strand
+from planner_reactor.runtime.values import Tuples
+
+
+class Fail:
+    """An abort that no process caused: ABORT, and the abort that `~` makes of a stop."""
+
+    __slots__ = ("ab",)
+    silent = True
+    zone = 0
+
+    def __init__(self, ab: Instruction) -> None:
+        self.ab = ab
+
+    def run(self, strand: Strand) -> Instruction | None:
+        strand.cause = "failed"
+        return self.ab
+
+
+@dataclass(frozen=True, slots=True)
+class Arguments:
+    """What goes into a call, and the slots that its results go to."""
+
+    values: Tuples
+    targets: tuple[int, ...]
+
+
+class Call:
+    """N7. `N_e<y> = [body[e/z]]_{r→y}`: a call that returns here."""
+
+    __slots__ = ("ab", "arguments", "definition", "failed", "kernel", "name", "ok", "targets", "zone")
+    silent = True
+
+    def __init__(
+        self,
+        kernel: Kernel,
+        definition: Definition,
+        passed: Arguments,
+        *,
+        ok: Instruction,
+        ab: Instruction,
+        failed: Instruction,
+        zone: int,
+        name: str,
+    ) -> None:
+        self.kernel = kernel
+        self.definition = definition
+        self.arguments = passed.values
+        self.targets = passed.targets
+        self.ok = ok
+        self.ab = ab
+        self.failed = failed
+        self.zone = zone
+        self.name = name
+
+    def run(self, strand: Strand) -> Instruction | None:
+        try:
+            values = self.arguments(strand.frame)
+        except EvaluationError:
+            return self.failed
+        clause = self.definition.select(values)
+        if clause is None:
+            return self.failed
+        stack = strand.stack
+        depth = 0 if stack is None else stack[3]
+        kernel = self.kernel
+        if depth > kernel.budgets.depth:
+            kernel.zeno = self.name
+            strand.cause = "budget"
+            return self.ab
+        code = clause.exporting() if self.targets else clause.plain()
+        strand.stack = (stack, strand.frame, self, depth + 1)
+        strand.frame = [*values, *code.blank]
+        meter = strand.meter
+        now = kernel.scheduler.now
+        if meter.instant != now:
+            meter.instant = now
+            meter.rounds = 0
+        meter.rounds += 1
+        if meter.rounds > kernel.budgets.rounds:
+            return kernel.overrun(strand, self.name, code.entry)
+        return code.entry
+
+
+class TailCall:
+    """N6. `[r>T]_{} = [T]_{}`: a call in whose place nothing is left to do."""
+
+    __slots__ = ("arguments", "definition", "failed", "kernel", "name", "zone")
+    silent = True
+
+    def __init__(
+        self,
+        kernel: Kernel,
+        definition: Definition,
+        passed: Arguments,
+        *,
+        failed: Instruction,
+        zone: int,
+        name: str,
+    ) -> None:
+        self.kernel = kernel
+        self.definition = definition
+        self.arguments = passed.values
+        self.failed = failed
+        self.zone = zone
+        self.name = name
+
+    def run(self, strand: Strand) -> Instruction | None:
+        try:
+            values = self.arguments(strand.frame)
+        except EvaluationError:
+            return self.failed
+        clause = self.definition.select(values)
+        if clause is None:
+            return self.failed
+        code = clause.plain()
+        strand.frame = [*values, *code.blank]
+        kernel = self.kernel
+        meter = strand.meter
+        now = kernel.scheduler.now
+        if meter.instant != now:
+            meter.instant = now
+            meter.rounds = 0
+        meter.rounds += 1
+        if meter.rounds > kernel.budgets.rounds:
+            return kernel.overrun(strand, self.name, code.entry)
+        return code.entry
+
+
+class Return:
+    """The end of a definition's body: the declared results, and nothing else, go to the caller."""
+
+    __slots__ = ("ok", "results")
+    silent = True
+    zone = 0
+
+    def __init__(self, results: tuple[int, ...], *, ok: bool) -> None:
+        self.ok = ok
+        self.results = results
+
+    def run(self, strand: Strand) -> Instruction | None:
+        stack = strand.stack
+        assert stack is not None
+        rest, frame, call, _ = stack
+        if call.targets:
+            inner = strand.frame
+            for slot, target in zip(self.results, call.targets, strict=False):
+                if slot >= 0 and inner[slot] is not UNBOUND:
+                    frame[target] = inner[slot]
+        strand.stack = rest
+        strand.frame = frame
+        return call.ok if self.ok else call.ab
+
+
+class RootEnd:
+    """The end of a root."""
+
+    __slots__ = ("kernel", "ok", "results")
+    silent = True
+    zone = 0
+
+    def __init__(self, kernel: Kernel, results: tuple[tuple[str, int], ...], *, ok: bool) -> None:
+        self.kernel = kernel
+        self.results = results
+        self.ok = ok
+
+    def run(self, strand: Strand) -> Instruction | None:
+        frame = strand.frame
+        root = strand.root
+        root.results = {name: frame[slot] for name, slot in self.results if frame[slot] is not UNBOUND}
+        self.kernel.ended(root, strand, ok=self.ok)
+        return None
+
+
+class Round:
+    """N8. `A:;B = A : ([B]_{} ; (A:;B))`: B has ended, however; A again, with fresh results."""
+
+    __slots__ = ("head", "kernel", "name", "slots", "zone")
+    silent = True
+
+    def __init__(self, kernel: Kernel, *, zone: int, name: str) -> None:
+        self.kernel = kernel
+        self.slots: tuple[int, ...] = ()
+        self.head: Instruction = self
+        self.zone = zone
+        self.name = name
+
+    def run(self, strand: Strand) -> Instruction | None:
+        frame: Frame = strand.frame
+        for slot in self.slots:
+            frame[slot] = UNBOUND
+        kernel = self.kernel
+        kernel.moved(strand)
+        meter = strand.meter
+        now = kernel.scheduler.now
+        if meter.instant != now:
+            meter.instant = now
+            meter.rounds = 0
+        meter.rounds += 1
+        if meter.rounds > kernel.budgets.rounds:
+            return kernel.overrun(strand, self.name, self.head)
+        return self.head
+
+
+class CloseBody:
+    """The end of what follows a control that opens bodies."""
+
+    __slots__ = ("kernel", "ok", "onward", "slot")
+    silent = True
+    zone = 0
+
+    def __init__(self, kernel: Kernel, slot: int, onward: Instruction, *, ok: bool) -> None:
+        self.kernel = kernel
+        self.slot = slot
+        self.onward = onward
+        self.ok = ok
+
+    def run(self, strand: Strand) -> Instruction | None:
+        body = strand.frame[self.slot]
+        if not isinstance(body, Body):  # nothing was delivered: what follows it ran without a body
+            return self.onward
+        strand.frame[self.slot] = UNBOUND
+        leave(strand, body)
+        kernel = self.kernel
+        kernel.close(body, "stop" if self.ok else "abort")
+        kernel.moved(strand)
+        if kernel.silent:
+            kernel.queue(strand, self.onward)
+            return None
+        return self.onward
+
+
+def enter(
+    kernel: Kernel, strand: Strand, opener: OpensBody, context: object, slot: int, close: Instruction
+) -> None:
+    """A body begins in this strand."""
+    body = Body(context, strand.body, strand, opener, close)
+    strand.frame[slot] = body
+    strand.body = strand.meter = body
+    kernel.bodies += 1
+    opener.opened(strand, body)
+
+
+def leave(strand: Strand, body: Body) -> None:
+    strand.body = body.parent
+    strand.meter = body.parent or strand.root
+
+
+def label_of(arguments: Tuples, strand: Strand) -> tuple[bool, Value]:
+    """The label of a guard: (whether it has a value, the value)."""
+    try:
+        return True, arguments(strand.frame)[0]
+    except EvaluationError:
+        return False, None

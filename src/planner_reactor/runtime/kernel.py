@@ -1,0 +1,351 @@
+"""The kernel: runs strands through linked instructions, in the order that the semantics asks for.
+
+First everything *silent*: strands are advanced to their next leaves and endings are passed on, until
+nothing is left; then one verdict of a `#`, innermost first, leftmost among equals (N5), and again what is
+silent; then the ready strands, first in first out, each for a slice of instructions; then time (rule TIME,
+maximal progress). Neither endings nor killing (N9) recurse: both keep explicit queues.
+
+One rule makes the inner loop short: **an instruction that leaves anything silent behind queues its own
+strand as silent too and returns None**. So whenever `run` returns an instruction, nothing else is due
+before it.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Hashable
+from heapq import heappop, heappush
+from typing import Any
+
+from planner_reactor.rs.terms import Value
+from planner_reactor.runtime.budgets import Budgets
+from planner_reactor.runtime.outcomes import Observer
+from planner_reactor.runtime.scheduler import Scheduler
+from planner_reactor.runtime.strands import (
+    FORKED,
+    OVER,
+    READY,
+    RUNNING,
+    SILENT,
+    UNBOUND,
+    WAITING,
+    WOKEN,
+    Body,
+    Fork,
+    Instruction,
+    Root,
+    Strand,
+)
+
+
+class Kernel:
+    """Queues, verdicts, killing, counters. Instructions hold a reference to it; nothing outside `runtime`
+    does.
+    """
+
+    __slots__ = ("_armed", "_draining", "_later", "_moved", "_ranked", "_slice", "_undecided", "_watched", "bodies",
+                 "budgets", "live", "note", "observer", "on_end", "ready", "rendezvous", "scheduler", "silent", "steps",
+                 "zeno")  # fmt: skip
+
+    def __init__(self, scheduler: Scheduler, budgets: Budgets, observer: Observer | None) -> None:
+        self.scheduler = scheduler
+        self.budgets = budgets
+        self.observer = observer
+        self.note: Callable[..., None] = lambda kind, **fields: None
+        self.on_end: Callable[[Root], object] = lambda root: None
+        self.silent: deque[Strand] = deque()
+        self.ready: deque[Strand] = deque()
+        self.live = 0
+        self.bodies = 0
+        self.steps = 0
+        self.rendezvous = 0
+        self.zeno: str | None = None
+        self._slice = range(budgets.slice)
+        self._undecided: list[Fork] = []
+        self._ranked: list[tuple[int, tuple[int, ...], Fork]] = []
+        self._watched: dict[Value, Callable[[], object]] = {}
+        self._moved: dict[Value, None] = {}
+        self._later: deque[Callable[[], object]] = deque()
+        self._draining = False
+        self._armed = False
+
+    # -- the loop
+
+    def run(self, strand: Strand, pc: Instruction) -> None:
+        """Let a strand run for a slice, or until it waits, forks, ends, or something else comes first."""
+        following: Instruction | None
+        for _ in self._slice:
+            following = pc.run(strand)
+            if following is None:
+                return
+            pc = following
+        while pc.silent:
+            following = pc.run(strand)
+            if following is None:
+                return
+            pc = following
+        strand.pc = pc
+        strand.state = READY
+        self.ready.append(strand)
+
+    def settle(self) -> None:
+        """Everything that belongs to the present step."""
+        silent, ready = self.silent, self.ready
+        while True:
+            while silent:
+                strand = silent.popleft()
+                if strand.state != SILENT:
+                    continue
+                strand.state = RUNNING
+                pc: Instruction | None = strand.pc
+                while pc is not None and pc.silent:
+                    pc = pc.run(strand)
+                if pc is not None:
+                    strand.pc = pc
+                    strand.state = READY
+                    ready.append(strand)
+            if self._undecided or self._ranked:
+                self._decide(self._next_undecided())
+            elif self._later:
+                self._later.popleft()()
+            else:
+                return
+
+    def drain(self) -> None:
+        """Run until every strand waits."""
+        self._armed = False
+        if self._draining:
+            return
+        self._draining = True
+        ready = self.ready
+        try:
+            while True:
+                if self.silent or self._undecided or self._later:
+                    self.settle()
+                if not ready:
+                    return
+                strand = ready.popleft()
+                if strand.state == READY or strand.state == WOKEN:
+                    strand.state = RUNNING
+                    self.run(strand, strand.pc)
+        finally:
+            self._draining = False
+
+    def arm(self) -> None:
+        """See to it that what was queued from outside a step gets done at the present instant."""
+        if not self._draining and not self._armed:
+            self._armed = True
+            self.scheduler.soon(self.drain)
+
+    def resume(self, strand: Strand, pc: Instruction) -> None:
+        """A waiting leaf has ended by itself (a step, already counted): go on behind it, now."""
+        strand.link = None
+        strand.state = RUNNING
+        if self._draining or self.silent:
+            self.queue(strand, pc)
+            self.arm()
+            return
+        self._draining = True
+        try:
+            self.run(strand, pc)
+        finally:
+            self._draining = False
+        if self.silent or self.ready or self._undecided or self._later:
+            self.drain()
+
+    def queue(self, strand: Strand, pc: Instruction) -> None:
+        """The strand will be advanced from here within the present step."""
+        strand.pc = pc
+        strand.state = SILENT
+        self.silent.append(strand)
+
+    def wake(self, strand: Strand) -> None:
+        """The strand that waits in a control will have a turn to try again."""
+        if strand.state == WAITING:
+            strand.state = WOKEN
+            self.ready.append(strand)
+            self.arm()
+
+    # -- verdicts of `#`
+
+    def undecided(self, fork: Fork) -> None:
+        """A part of this `#` has ended."""
+        fork.decided = True
+        self._undecided.append(fork)
+
+    def _next_undecided(self) -> Fork:
+        """The innermost, leftmost among equals. One is the rule; several are ranked."""
+        if not self._ranked and len(self._undecided) == 1:
+            return self._undecided.pop()
+        for fork in self._undecided:
+            heappush(self._ranked, (-fork.depth, fork.path(), fork))
+        self._undecided.clear()
+        return heappop(self._ranked)[2]
+
+    def _decide(self, fork: Fork) -> None:
+        """N5. `x.r # live Q` = x.r and Q is aborted; both in one step: stop wins, then the leftmost."""
+        parent = fork.parent
+        if parent.state != FORKED or parent.link is not fork:
+            return
+        index, ok, cause = min(fork.ended, key=lambda end: (not end[1], end[0]))
+        self.kill(fork.strands())
+        exits: Any = fork.exits
+        if exits.exports:
+            frame = parent.frame
+            for inner, outer in exits.exports[index]:
+                frame[outer] = frame[inner]
+        self.joined(fork, ok, cause)
+
+    def joined(self, fork: Fork, ok: bool, cause: str) -> None:
+        """A fork is over: the strand that met it goes on."""
+        parent = fork.parent
+        parent.link = None
+        if not ok:
+            parent.cause = cause
+        self.queue(parent, fork.exits.ok if ok else fork.exits.ab)
+
+    # -- killing (N9)
+
+    def kill(self, strands: list[Strand]) -> None:
+        """Abort these strands and all below them, left to right; a served body is closed after its content."""
+        pending: list[Strand | Body] = list(reversed(strands))
+        while pending:
+            item = pending.pop()
+            if isinstance(item, Body):
+                self.close(item, "killed")
+                continue
+            state = item.state
+            if state == OVER:
+                continue
+            link, pc = item.link, item.pc
+            body = item.body
+            opened: list[Strand | Body] = []
+            while body is not None and body.strand is item:
+                opened.append(body)
+                body = body.parent
+            pending.extend(reversed(opened))
+            self.live -= 1
+            item.state = OVER
+            if state == FORKED:
+                pending.extend(reversed(link.strands()))
+            elif state == WAITING or state == WOKEN:
+                pc.cancel(item)  # type: ignore[attr-defined]  # only a leaf waits
+            item.release()
+
+    def close(self, body: Body, outcome: str) -> None:
+        self.bodies -= 1
+        body.outcome = outcome
+        body.opener.closed(body)
+
+    def abort_body(self, body: Body, cause: str) -> None:
+        """Abort a body in service: its content is killed, its strand goes on where the body's abort leads."""
+        strand = body.strand
+        if strand.state == FORKED:
+            self.kill(strand.link.strands())
+        while strand.body is not None and strand.body is not body:
+            self.close(strand.body, "killed")
+            strand.body = strand.body.parent
+        strand.frame = body.frame
+        strand.stack = body.stack
+        strand.link = None
+        strand.cause = cause
+        self.queue(strand, body.close)
+
+    # -- budgets
+
+    def overrun(self, strand: Strand, name: str, onward: Instruction) -> Instruction | None:
+        """K rounds at one instant: the nearest body aborts; a root waits one quantum before it goes on."""
+        self.zeno = name
+        self.note("zeno", name=name, root=strand.root.name)
+        return self.curb(strand, onward)
+
+    def curb(self, strand: Strand, onward: Instruction) -> Instruction | None:
+        """A budget is used up."""
+        if strand.body is not None:
+            self.abort_body(strand.body, "budget")
+            return None
+        strand.pc = Pause(self, onward)
+        strand.link = self.scheduler.wait(self.scheduler.now + self.budgets.quantum, strand)
+        strand.state = WAITING
+        return None
+
+    def crowded(self, strand: Strand, ab: Instruction) -> Instruction | None:
+        """No further strand may come to life: the nearest body aborts; in a root, what would have forked."""
+        self.note("crowded", root=strand.root.name)
+        strand.cause = "budget"
+        return ab if strand.body is None else self.curb(strand, ab)
+
+    # -- what waits for something to come to rest
+
+    def watch(self, label: Value, told: Callable[[], object]) -> None:
+        """Call `told` after every step in which something below the guard `label` may have come to rest."""
+        self._watched[label] = told
+
+    def unwatch(self, label: Value) -> None:
+        self._watched.pop(label, None)
+
+    def moved(self, strand: Strand) -> None:
+        """A round or a part ended, or a control waits."""
+        if self._watched and strand.guard in self._watched:
+            if not self._moved:
+                self._later.append(self._tell_watchers)
+            self._moved[strand.guard] = None
+
+    def _tell_watchers(self) -> None:
+        moved, self._moved = self._moved, {}
+        for label in moved:
+            if label in self._watched:
+                self._watched[label]()
+
+    # -- roots
+
+    def kill_root(self, root: Root) -> None:
+        """Abort a root from outside, at the end of the present step."""
+        self._later.append(lambda: self._kill_root(root))
+        self.arm()
+
+    def _kill_root(self, root: Root) -> None:
+        strand = root.strand
+        if strand is not None:
+            root.outcome, root.cause, root.strand = "abort", "cancelled", None
+            self.kill([strand])
+            self.on_end(root)
+
+    def ended(self, root: Root, strand: Strand, *, ok: bool) -> None:
+        """A root has ended."""
+        root.outcome = "stop" if ok else "abort"
+        root.cause = "" if ok else strand.cause
+        root.strand = None
+        self.live -= 1
+        strand.release()
+        self.on_end(root)
+
+
+class Pause:
+    """Where a strand stands that waits one quantum before its next round."""
+
+    __slots__ = ("_kernel", "_onward")
+    silent = False
+    zone = 0
+    resting = False
+    site: Hashable = None
+
+    def __init__(self, kernel: Kernel, onward: Instruction) -> None:
+        self._kernel = kernel
+        self._onward = onward
+
+    def run(self, strand: Strand) -> Instruction | None:
+        return self._onward
+
+    def elapsed(self, strand: Strand) -> None:
+        self._kernel.resume(strand, self._onward)
+
+    def cancel(self, strand: Strand) -> None:
+        self._kernel.scheduler.withdrawn()
+
+
+def unbind(strand: Strand, slots: tuple[int, ...]) -> None:
+    """Forget these bindings."""
+    frame = strand.frame
+    for slot in slots:
+        frame[slot] = UNBOUND

@@ -1,0 +1,302 @@
+"""The leaves that the executer knows itself: tests, choices, delays, NIL; and the one that runs any
+`Control`.
+
+Running a leaf is a step. A leaf whose arguments have no value is one step too, which aborts with cause
+`error` (`Mistake`). Ports are in `ports`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Hashable
+from dataclasses import dataclass
+
+from planner_reactor.rs.expressions import EvaluationError, is_number
+from planner_reactor.rs.terms import Value
+from planner_reactor.runtime.instructions import enter
+from planner_reactor.runtime.kernel import Kernel
+from planner_reactor.runtime.outcomes import Control, OpensBody, Outcome
+from planner_reactor.runtime.strands import RUNNING, WAITING, Instruction, Strand
+from planner_reactor.runtime.values import Tuples
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Setting:
+    """What every leaf is compiled with."""
+
+    kernel: Kernel
+    name: str
+    arguments: Tuples
+    targets: tuple[int, ...]
+    ok: Instruction
+    ab: Instruction
+    failed: Mistake
+    zone: int
+    site: Hashable
+
+
+class Mistake:
+    """A call whose arguments have no value, or that no clause answers: one step, which aborts (cause
+    error).
+    """
+
+    __slots__ = ("ab", "kernel", "name", "site", "zone")
+    silent = False
+    resting = False
+
+    def __init__(self, kernel: Kernel, name: str, ab: Instruction, *, zone: int, site: Hashable) -> None:
+        self.kernel = kernel
+        self.name = name
+        self.ab = ab
+        self.zone = zone
+        self.site = site
+
+    def run(self, strand: Strand) -> Instruction | None:
+        kernel = self.kernel
+        kernel.steps += 1
+        if kernel.observer is not None:
+            kernel.observer((self.name, (), "ab", ()))
+        strand.cause = "error"
+        kernel.note("mistake", name=self.name, place=str(self.site), root=strand.root.name)
+        return self.ab
+
+
+class Test:
+    """GTR, LST, Equal: stops if it holds, else aborts; at once."""
+
+    __slots__ = ("ab", "arguments", "failed", "holds", "kernel", "name", "ok", "site", "zone")
+    silent = False
+    resting = False
+
+    def __init__(self, setting: Setting, holds: Callable[..., bool]) -> None:
+        self.kernel = setting.kernel
+        self.name = setting.name
+        self.arguments = setting.arguments
+        self.ok = setting.ok
+        self.ab = setting.ab
+        self.failed = setting.failed
+        self.zone = setting.zone
+        self.site = setting.site
+        self.holds = holds
+
+    def run(self, strand: Strand) -> Instruction | None:
+        try:
+            values = self.arguments(strand.frame)
+        except EvaluationError:
+            return self.failed.run(strand)
+        holds = self.holds(*values)
+        kernel = self.kernel
+        kernel.steps += 1
+        if kernel.observer is not None:
+            kernel.observer((self.name, values, "ok" if holds else "ab", ()))
+        if holds:
+            return self.ok
+        strand.cause = "failed"
+        return self.ab
+
+
+class Ran:
+    """Ran[l,h]<x>: a number between l and h, drawn from the scheduler's stream `Ran`."""
+
+    __slots__ = ("setting",)
+    silent = False
+    resting = False
+
+    def __init__(self, setting: Setting) -> None:
+        self.setting = setting
+
+    @property
+    def zone(self) -> int:
+        return self.setting.zone
+
+    @property
+    def site(self) -> Hashable:
+        return self.setting.site
+
+    def run(self, strand: Strand) -> Instruction | None:
+        setting, kernel = self.setting, self.setting.kernel
+        try:
+            low, high = values = setting.arguments(strand.frame)
+        except (EvaluationError, ValueError):
+            return setting.failed.run(strand)
+        kernel.steps += 1
+        if not (is_number(low) and is_number(high)):
+            observe(kernel, setting.name, values, ok=False)
+            strand.cause = "error"
+            return setting.ab
+        drawn = kernel.scheduler.random("Ran").uniform(low, high)  # type: ignore[arg-type]
+        for slot in setting.targets[:1]:
+            strand.frame[slot] = drawn
+        if kernel.observer is not None:
+            kernel.observer((setting.name, values, "ok", (drawn,)))
+        return setting.ok
+
+
+class Pass:
+    """Delay, SUSPEND, Term: stops when its time has passed. `seconds` gives the age at which this one ends."""
+
+    __slots__ = ("arguments", "kernel", "name", "ok", "seconds", "setting", "site", "zone")
+    silent = False
+    resting = False
+
+    def __init__(self, setting: Setting, seconds: Callable[[float, Kernel], float] | None = None) -> None:
+        self.setting = setting
+        self.kernel = setting.kernel
+        self.name = setting.name
+        self.arguments = setting.arguments
+        self.ok = setting.ok
+        self.zone = setting.zone
+        self.site = setting.site
+        self.seconds = seconds
+
+    def run(self, strand: Strand) -> Instruction | None:
+        kernel = self.kernel
+        try:
+            (age,) = values = self.arguments(strand.frame)
+        except (EvaluationError, ValueError):
+            return self.setting.failed.run(strand)
+        if age.__class__ is not float and not is_number(age):
+            kernel.steps += 1
+            observe(kernel, self.name, values, ok=False)
+            strand.cause = "error"
+            return self.setting.ab
+        if self.seconds is not None:
+            age = self.seconds(age, kernel)  # type: ignore[arg-type]
+        if age <= 0:  # type: ignore[operator]
+            kernel.steps += 1
+            observe(kernel, self.name, values, ok=True)
+            return self.ok
+        scheduler = kernel.scheduler
+        strand.pc = self
+        strand.state = WAITING
+        strand.link = scheduler.wait(scheduler.now + age, strand)  # type: ignore[operator]
+        return None
+
+    def elapsed(self, strand: Strand) -> None:
+        kernel = self.kernel
+        kernel.steps += 1
+        if kernel.observer is not None:
+            kernel.observer((self.name, self.arguments(strand.frame), "ok", ()))
+        kernel.resume(strand, self.ok)
+
+    def cancel(self, strand: Strand) -> None:
+        self.kernel.scheduler.withdrawn()
+
+
+def milliseconds(age: float, kernel: Kernel) -> float:
+    return age / 1000
+
+
+def at_most(age: float, kernel: Kernel) -> float:
+    """Term[t] ends at any age up to t; in execution it is drawn (requirements S35)."""
+    return kernel.scheduler.random("Term").uniform(0.0, age) if age > 0 else 0.0
+
+
+class Never:
+    """NIL: neither stops nor aborts."""
+
+    __slots__ = ("site", "zone")
+    silent = False
+    resting = True
+
+    def __init__(self, setting: Setting) -> None:
+        self.zone = setting.zone
+        self.site = setting.site
+
+    def run(self, strand: Strand) -> Instruction | None:
+        strand.pc = self
+        strand.state = WAITING
+        return None
+
+    def cancel(self, strand: Strand) -> None:
+        """Nothing to take back."""
+
+
+class Use:
+    """A leaf that runs a `Control`; if it opens a body, `slot` is where the frame keeps that body.
+
+    Without a slot nothing follows it, and there is no body; before `::` the body is that of the spawned
+    strand (`spawns`), which finds the context in `value`.
+    """
+
+    __slots__ = ("close", "control", "kernel", "setting", "slot", "spawns")
+    silent = False
+
+    def __init__(self, setting: Setting, control: Control) -> None:
+        self.setting = setting
+        self.kernel = setting.kernel
+        self.control = control
+        self.slot = -1
+        self.close: Instruction | None = None
+        self.spawns = False
+
+    @property
+    def zone(self) -> int:
+        return self.setting.zone
+
+    @property
+    def site(self) -> Hashable:
+        return self.setting.site
+
+    @property
+    def resting(self) -> bool | Callable[[Strand], bool]:
+        return self.control.resting
+
+    @property
+    def opens(self) -> bool:
+        """Does something follow it, so that what it delivers gets a body?"""
+        return self.slot >= 0
+
+    def run(self, strand: Strand) -> Instruction | None:
+        kernel, setting, control = self.kernel, self.setting, self.control
+        strand.pc = self
+        try:
+            values = setting.arguments(strand.frame)
+        except EvaluationError:
+            return setting.failed.run(strand)
+        strand.state = WAITING
+        outcome = control.start(strand, values)
+        if outcome is None:
+            if control.announces:
+                kernel.steps += 1
+                observe(kernel, setting.name, values, ok=True, status="wait")
+            kernel.moved(strand)
+            return None
+        strand.state = RUNNING
+        onward = self.finish(strand, values, outcome)
+        if kernel.silent:
+            kernel.queue(strand, onward)
+            return None
+        return onward
+
+    def finish(self, strand: Strand, values: tuple[Value, ...], outcome: Outcome) -> Instruction:
+        """The process ends as a step of its own."""
+        kernel = self.kernel
+        kernel.steps += 1
+        if kernel.observer is not None:
+            kernel.observer((self.setting.name, values, "ok" if outcome.ok else "ab", outcome.values))
+        return self.take(strand, outcome)
+
+    def take(self, strand: Strand, outcome: Outcome) -> Instruction:
+        """Bind the results and begin the body, if one follows; where to go on."""
+        strand.link = None
+        frame = strand.frame
+        for slot, value in zip(self.setting.targets, outcome.values, strict=False):
+            frame[slot] = value
+        if not outcome.ok:
+            strand.cause = outcome.cause or "failed"
+            return self.setting.ab
+        if self.spawns:
+            strand.value = outcome.context
+        elif self.close is not None:
+            opener: OpensBody = self.control  # type: ignore[assignment]  # it has a body to close
+            enter(self.kernel, strand, opener, outcome.context, self.slot, self.close)
+        return self.setting.ok
+
+    def cancel(self, strand: Strand) -> None:
+        self.control.cancel(strand)
+
+
+def observe(kernel: Kernel, name: str, values: tuple[Value, ...], *, ok: bool, status: str = "") -> None:
+    """Tell the observer, if there is one, of a step without results."""
+    if kernel.observer is not None:
+        kernel.observer((name, values, status or ("ok" if ok else "ab"), ()))
