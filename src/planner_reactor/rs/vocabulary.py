@@ -58,6 +58,15 @@ class Signature:
         """What the argument at this position (from 0) stands for."""
         return self.inputs[position] if position < len(self.inputs) else "any"
 
+    def usage(self) -> str:
+        """How a call is written, for messages: `SIT[situation]<k, …>`."""
+        first_optional = len(self.inputs) - self.optional
+        inputs = [kind if i < first_optional else f"{kind}?" for i, kind in enumerate(self.inputs)]
+        inputs += ["…"] * self.open_inputs
+        results = [*self.results, *["…"] * self.open_results]
+        text = self.name + (f"[{', '.join(inputs)}]" if inputs else "")
+        return text + (f"<{', '.join(results)}>" if results else "")
+
 
 AT_ONCE = (0.0, 0.0)
 _FIRST: tuple[Kind, ...] = ("situation",)

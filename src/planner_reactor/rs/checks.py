@@ -1,0 +1,101 @@
+"""All static checks of a program, and the list of what they and the parser may find.
+
+Errors stop a program from loading, warnings do not. The rules are those of `semantics`; each module says
+which.
+
+    from the text (`parser`, `tokens`, `scope`)
+      syntax                 error    the text does not follow the grammar
+      too-long, too-deep, too-many-tokens
+                             error    a budget is exceeded
+      rebound, clash         error    a name is bound twice in one scope, or by two parts side by side
+      mixed-operators        warning  `:` and `;` without parentheses
+    on heads (`clauses`)
+      redefined              error    the name of a basic or built-in process is defined
+      clause-form            error    clauses of one name differ in the number of arguments or results
+      overlapping-clauses    error    two clauses can both apply
+    on calls (`calls`, `bindings`)
+      unknown-process, unknown-function, no-clause
+                             error    nothing of that name, or with these arguments
+      argument-count, result-count, argument-kind
+                             error    not what the process expects
+      unbound                error    a result is used where it does not reach, or is never bound
+      may-be-unbound         warning  its binder may abort, or lose a `#`
+    on behaviour (`guardedness`, `situations`, `ports`, `unused`)
+      unguarded-recursion, silent-loop
+                             error    it would go on for ever without a step
+      sit-position, self-call, asserted-below-itself
+                             error    a reaction would lose its tail, or an ASSERT would never return
+      unserved-port          error    in a complete program, a port that is only read or only written
+      unserved-situation     warning  no reaction serves it
+      unreachable, unused-parameter
+                             warning  never called, never read
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+
+from planner_reactor.errors import Diagnostic
+from planner_reactor.rs.bindings import check_bindings
+from planner_reactor.rs.calls import check_calls
+from planner_reactor.rs.clauses import check_clauses
+from planner_reactor.rs.guardedness import check_guardedness
+from planner_reactor.rs.linking import Linked
+from planner_reactor.rs.parser import read_program
+from planner_reactor.rs.ports import check_ports
+from planner_reactor.rs.situations import check_situations
+from planner_reactor.rs.source import Source
+from planner_reactor.rs.terms import Program
+from planner_reactor.rs.unused import check_unused, reached_from
+from planner_reactor.rs.uses import flows, uses
+from planner_reactor.rs.vocabulary import BUILT_IN, Signature
+
+
+def check(
+    program: Program,
+    *,
+    signatures: Mapping[str, Signature] = BUILT_IN,
+    functions: Collection[str] = frozenset(),
+    roots: Collection[str] = (),
+    complete: bool = False,
+    ports: Collection[str] = (),
+) -> tuple[Diagnostic, ...]:
+    """Everything that is wrong or doubtful about a program, in the order of the text.
+
+    `signatures` are the host's processes (the built-in ones are always there), `functions` its functions,
+    `roots` the definitions that will be started. A program with roots, or one said to be `complete`, must
+    serve all its ports but those that the host serves, `ports`.
+    """
+    linked = Linked(program, {**signatures, **BUILT_IN}, functions)
+    known = flows(linked)
+    used = uses(linked, known, among=reached_from(linked, roots))
+    found = [
+        *check_clauses(linked),
+        *check_calls(linked, known),
+        *check_bindings(linked),
+        *check_guardedness(linked),
+        *check_situations(linked, used),
+        *check_unused(linked, roots),
+        *(check_ports(linked, used, ports) if roots or complete else ()),
+    ]
+    return tuple(sorted(dict.fromkeys(found), key=lambda f: (f.place.file, f.place.line, f.place.column)))
+
+
+def check_text(
+    text: str,
+    file: str = "<text>",
+    *,
+    signatures: Mapping[str, Signature] = BUILT_IN,
+    functions: Collection[str] = frozenset(),
+    roots: Collection[str] = (),
+    ports: Collection[str] = (),
+) -> tuple[Diagnostic, ...]:
+    """Everything that is wrong or doubtful about a text, which is taken for a complete program; each finding
+    comes with its line. While the text cannot be read, only what was found in reading it is reported."""
+    program, found = read_program(text, file=file)
+    if any(f.severity == "error" for f in found):
+        return found
+    static = check(
+        program, signatures=signatures, functions=functions, roots=roots, ports=ports, complete=True
+    )
+    return Source(text, file).shown([*found, *static])

@@ -1,0 +1,46 @@
+"""From text to a program that may run: parsed, bound, checked, or refused as a whole.
+
+A text may extend a program that is running already (R §9.1: definitions are passed to the executer as they
+are made): it is then checked together with that program, and nothing of it is loaded if there is any error.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+
+from planner_reactor.errors import RSError
+from planner_reactor.rs.checks import check
+from planner_reactor.rs.parser import parse_program
+from planner_reactor.rs.source import Source
+from planner_reactor.rs.terms import Program
+from planner_reactor.rs.vocabulary import BUILT_IN, Signature
+
+NOTHING = Program()
+
+
+def load(
+    text: str,
+    *,
+    file: str = "<text>",
+    signatures: Mapping[str, Signature] = BUILT_IN,
+    functions: Collection[str] = frozenset(),
+    given: Program = NOTHING,
+    roots: Collection[str] = (),
+    ports: Collection[str] = (),
+) -> Program:
+    """The definitions in `text` (without those of `given`, beside which they are checked); raises `RSError`.
+
+    With `roots` the program is taken to be complete (`checks`).
+    """
+    program = parse_program(text, file=file)
+    found = check(
+        given.with_schemas(program.schemas),
+        signatures=signatures,
+        functions=functions,
+        roots=roots,
+        ports=ports,
+    )
+    errors = [f for f in found if f.severity == "error"]
+    if errors:
+        raise RSError(Source(text, file).shown(errors))
+    return program
