@@ -1,0 +1,216 @@
+"""What a planning domain is made of: assumptions, goals, a causal theory, facts, action schemas (R §7.4,
+Figs 5, 6).
+
+A `Domain` is what `reader` makes of a text `*.itl`. Everything is immutable; variables are numbers that
+count from 0 in each rule, goal and schema, so that a fresh copy is made by adding an offset. Intervals are
+gone: what is left of `p(x) @ i and ITL(i, R, Action)` is a `Condition` with the relation R from its
+interval to that of the action, and of `ITL(Action, R, j) and q(x) @ j` an `Effect` with the relation R from
+the action's interval to its own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from types import MappingProxyType
+from typing import Literal, TypeVar
+
+from planner_reactor.errors import Place
+from planner_reactor.logic.allen import NAMED, relations
+from planner_reactor.logic.formulas import Atom, Term
+
+AT_START = relations(["m", "o", "si", "e", "di", "fi"])
+"""A condition without a relation of its own: it holds when the action starts."""
+MEETS = NAMED["meets"]
+"""An effect without a relation of its own: it holds from the end of the action."""
+
+_T = TypeVar("_T")
+
+
+@dataclass(frozen=True, slots=True)
+class Assumption:
+    """A temporal predicate that is taken to hold until there is evidence against it (R §7.4, §8.2).
+
+    `likelihood` of holding gives the order of relaxation. `monitor` is `flag` (checked every `period_ms`)
+    or `reaction` (the process that runs into its failure reports it). A `reinstatable` one may come back (R
+    §9.2.3).
+    """
+
+    name: str
+    parameters: int = 0
+    likelihood: float = 0.5
+    monitor: Literal["flag", "reaction"] = "flag"
+    period_ms: int = 2000
+    reinstatable: bool = False
+    place: Place | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Condition:
+    """An atom that must hold over an interval; `relation` leads from that interval to the one it is
+    stated for.
+    """
+
+    atom: Atom
+    relation: int = AT_START
+
+
+@dataclass(frozen=True, slots=True)
+class Effect:
+    """An atom that an action brings about; `relation` leads from the action's interval to the atom's."""
+
+    atom: Atom
+    relation: int = MEETS
+
+
+@dataclass(frozen=True, slots=True)
+class Rule:
+    """`body and assumptions => head`; each condition's relation leads from its interval to the head's.
+
+    `distinct` are pairs of terms that must differ.
+    """
+
+    head: Atom
+    body: tuple[Condition, ...]
+    assumptions: tuple[Atom, ...]
+    distinct: tuple[tuple[Term, Term], ...]
+    size: int
+    place: Place | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Exclusion:
+    """`first @ i and second @ j and … => ITL(i, disjunct, j)`: the two never hold together (R Fig. 6).
+
+    `given` are further atoms that must hold beside one of the two, `distinct` pairs of terms that must
+    differ.
+    """
+
+    first: Atom
+    second: Atom
+    given: tuple[Atom, ...]
+    distinct: tuple[tuple[Term, Term], ...]
+    size: int
+    place: Place | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Persistence:
+    """An atom that lasts only as long as the assumptions hold; what is not named lasts until something
+    excludes it.
+    """
+
+    atom: Atom
+    assumptions: tuple[Atom, ...]
+    size: int
+    place: Place | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class ActionSchema:
+    """An action: basic if `expansions` is empty (a process that the reactor can run), abstract
+    otherwise (Fig. 5).
+
+    `inputs`, `outputs` and `unnamed` are variables; `variables` holds their names. `presumes` are
+    assumptions that the action brings in without needing them, `applicability` must hold when it is
+    selected, `executability` is chained on. A schema that `senses` takes no time worth ordering;
+    `otherwise` is what its abort tells. A `cleanup` may be run at any time, does nothing where its
+    conditions do not hold, and serves the fail branch of a reaction.
+    """
+
+    name: str
+    variables: tuple[str, ...] = ()
+    inputs: tuple[int, ...] = ()
+    outputs: tuple[int, ...] = ()
+    unnamed: tuple[int, ...] = ()
+    presumes: tuple[Atom, ...] = ()
+    applicability: tuple[Atom, ...] = ()
+    executability: tuple[Condition, ...] = ()
+    effects: tuple[Effect, ...] = ()
+    otherwise: tuple[Effect, ...] = ()
+    expansions: tuple[Atom, ...] = ()
+    senses: bool = False
+    cleanup: bool = False
+    place: Place | None = field(default=None, compare=False, repr=False)
+
+    @property
+    def abstract(self) -> bool:
+        return bool(self.expansions)
+
+    @property
+    def size(self) -> int:
+        """How many variables it has."""
+        return len(self.variables)
+
+
+@dataclass(frozen=True, slots=True)
+class Goal:
+    """`forall …: antecedent => Exists …: consequent`, R (13). `lasting` atoms must hold to the end of
+    time.
+    """
+
+    name: str
+    antecedent: tuple[Atom, ...]
+    consequent: tuple[Atom, ...]
+    lasting: tuple[bool, ...]
+    size: int
+    place: Place | None = field(default=None, compare=False, repr=False)
+
+
+class Domain:
+    """A planning domain, with the indexes that chaining needs. All mappings keep the order of the text."""
+
+    __slots__ = (
+        "assumptions",
+        "excluding",
+        "exclusions",
+        "facts",
+        "file",
+        "goals",
+        "persistences",
+        "producers",
+        "rules",
+        "rules_for",
+        "schemas",
+    )  # fmt: skip
+
+    def __init__(
+        self,
+        *,
+        assumptions: Iterable[Assumption] = (),
+        goals: Iterable[Goal] = (),
+        rules: Iterable[Rule] = (),
+        exclusions: Iterable[Exclusion] = (),
+        persistences: Iterable[Persistence] = (),
+        facts: Iterable[Atom] = (),
+        schemas: Iterable[ActionSchema] = (),
+        file: str = "<text>",
+    ) -> None:
+        self.file = file
+        self.assumptions: Mapping[str, Assumption] = MappingProxyType({a.name: a for a in assumptions})
+        self.goals: Mapping[str, Goal] = MappingProxyType({g.name: g for g in goals})
+        self.rules = tuple(rules)
+        self.exclusions = tuple(exclusions)
+        self.persistences: Mapping[str, tuple[Persistence, ...]] = _grouped(
+            (p.atom.predicate, p) for p in persistences
+        )
+        self.facts: Mapping[str, tuple[Atom, ...]] = _grouped((f.predicate, f) for f in facts)
+        self.schemas: Mapping[str, ActionSchema] = MappingProxyType({s.name: s for s in schemas})
+        self.rules_for: Mapping[str, tuple[Rule, ...]] = _grouped((r.head.predicate, r) for r in self.rules)
+        self.producers: Mapping[str, tuple[tuple[ActionSchema, Effect], ...]] = _grouped(
+            (effect.atom.predicate, (schema, effect))
+            for schema in self.schemas.values()
+            for effect in schema.effects
+        )
+        self.excluding: Mapping[str, tuple[tuple[Exclusion, Atom, Atom], ...]] = _grouped(
+            (one.predicate, (rule, one, other))
+            for rule in self.exclusions
+            for one, other in ((rule.first, rule.second), (rule.second, rule.first))
+        )
+
+
+def _grouped(pairs: Iterable[tuple[str, _T]]) -> Mapping[str, tuple[_T, ...]]:
+    groups: dict[str, list[_T]] = {}
+    for key, value in pairs:
+        groups.setdefault(key, []).append(value)
+    return MappingProxyType({key: tuple(values) for key, values in groups.items()})

@@ -1,0 +1,74 @@
+"""The words and signs of a domain text `*.itl`, each with its place.
+
+Identifiers may hold hyphens (`int-54`, as X §6.3 prints them), `//` begins a comment. Budgets on size keep
+a hostile text from costing more than milliseconds.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import NamedTuple
+
+from planner_reactor.errors import Diagnostic, DomainError, Place
+
+TEXT_LIMIT = 4_000_000
+"""Longest domain text that is read, in characters."""
+
+_TOKEN = re.compile(
+    r"""(?P<skip>(?:\s+|//[^\n]*)+)
+    |(?P<name>[A-Za-z_]\w*(?:-\w+)*)
+    |(?P<number>\d+(?:\.\d+)?)
+    |(?P<sign><=>|=>|/=|[@()\[\]<>,;:])
+    |(?P<other>.)""",
+    re.VERBOSE | re.DOTALL,
+)
+
+
+class Token(NamedTuple):
+    """`kind` is `name`, `number`, `sign` or `end`; `offset` counts characters from 0."""
+
+    kind: str
+    text: str
+    offset: int
+
+
+class Source:
+    """A text with its name; turns an offset into a place or a finding."""
+
+    __slots__ = ("file", "text")
+
+    def __init__(self, text: str, file: str) -> None:
+        self.text = text
+        self.file = file
+
+    def place(self, offset: int) -> Place:
+        before = self.text.rfind("\n", 0, offset)
+        return Place(self.text.count("\n", 0, offset) + 1, offset - before, self.file)
+
+    def diagnostic(
+        self, offset: int, code: str, message: str, hint: str = "", *, severity: str = "error"
+    ) -> Diagnostic:
+        start = self.text.rfind("\n", 0, offset) + 1
+        end = self.text.find("\n", offset)
+        line = self.text[start : end if end >= 0 else len(self.text)]
+        return Diagnostic(self.place(offset), severity, code, message, hint, line[:400])
+
+
+def tokens(source: Source) -> list[Token]:
+    """The tokens of a text, with one of kind `end` at the end; DomainError for a text too large or a
+    stray sign.
+    """
+    if len(source.text) > TEXT_LIMIT:
+        message = f"the text has more than {TEXT_LIMIT} characters"
+        raise DomainError([Diagnostic(Place(1, 1, source.file), "error", "too-large", message)])
+    found: list[Token] = []
+    for match in _TOKEN.finditer(source.text):
+        kind = match.lastgroup
+        if kind == "other":
+            hint = "comments begin with //" if match[0] in "#%" else ""
+            message = f"{match[0]!r} has no meaning in a domain"
+            raise DomainError([source.diagnostic(match.start(), "stray-sign", message, hint)])
+        if kind is not None and kind != "skip":
+            found.append(Token(kind, match[0], match.start()))
+    found.append(Token("end", "", len(source.text)))
+    return found

@@ -1,0 +1,45 @@
+"""Networks from text: what is read, and what each fault says."""
+
+from __future__ import annotations
+
+import pytest
+
+from planner_reactor.errors import DomainError
+from planner_reactor.logic.allen import BIT, relations
+from planner_reactor.logic.network_text import read_network
+
+
+def test_lines_become_constraints() -> None:
+    network = read_network("// a comment\ni1 (b m o) i2\ni2 [m, o] i3 # another\n\ni3 meets i4\ni3 m i4")
+    assert network.intervals == ("i1", "i2", "i3", "i4")
+    assert network.relation("i1", "i2") == relations(["b", "m", "o"])
+    assert network.relation("i3", "i4") == BIT["m"]
+
+
+def test_a_contradiction_is_an_answer_not_an_error() -> None:
+    assert not read_network("a (b) b\nb (b) a").consistent
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "column", "says"),
+    [
+        ("i1", 1, 3, "not a constraint"),
+        ("a (b) b\ni1 (b q) i2", 2, 7, "q is not a relation"),
+        ("i1 mets i2", 1, 4, "did you mean meets"),
+        ("i1 () i2", 1, 5, "empty list"),
+        ("i1 (b) i2 i3", 1, 11, "expected the end of the line"),
+        ("i1 (b)", 1, 7, "second interval is missing"),
+        ("i1 (b", 1, 3, "expected INTERVAL (RELATIONS) INTERVAL"),
+    ],
+)
+def test_a_fault_has_its_place_and_its_cause(text: str, line: int, column: int, says: str) -> None:
+    with pytest.raises(DomainError) as caught:
+        read_network(text, file="net.txt")
+    assert (caught.value.place.line, caught.value.place.column) == (line, column)
+    assert says in str(caught.value)
+
+
+def test_all_faults_are_found_in_one_reading() -> None:
+    with pytest.raises(DomainError) as caught:
+        read_network("a (x) b\nc (y) d")
+    assert len(caught.value.diagnostics) == 2
