@@ -1,0 +1,151 @@
+"""The robot's side of the cell, in one place: what every basic process and every monitor works with.
+
+Nothing here or in the processes reads the plant: pictures come from `sensors`, deeds go through the `arm`,
+and what is known is what `memory` holds. `Steps` is what a basic process is: a generator that yields seconds
+or signals.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Generator
+from typing import Any, TypeAlias, TypeVar
+
+from planner_reactor.runtime.scheduler import Scheduler
+from planner_reactor.runtime.signals import Aborted, Signal
+from planner_reactor.workcell.arm import FIXED, OPPORTUNE, Arm
+from planner_reactor.workcell.calibration import Calibration
+from planner_reactor.workcell.downstream import Verdict
+from planner_reactor.workcell.evidence import Evidence
+from planner_reactor.workcell.kit import KitSpec
+from planner_reactor.workcell.memory import Memory, PartRecord, TrayRecord
+from planner_reactor.workcell.plant import Plant
+from planner_reactor.workcell.sensors import Glimpse, Sensors
+
+T = TypeVar("T")
+Steps: TypeAlias = Generator[Any, Any, T]
+TRAY = "tray"
+
+
+class Cell:
+    """Sensors, arm, memory and evidence of one workcell."""
+
+    def __init__(self, plant: Plant) -> None:
+        self.kit: KitSpec = plant.kit
+        self.calibration: Calibration = plant.calibration
+        self.scheduler: Scheduler = plant.scheduler
+        self.sensors = Sensors(plant)
+        self.memory = Memory(self.kit, self.calibration)
+        self.evidence = Evidence(self.scheduler, self.calibration.quiet_s, plant.trace)
+        self.arm = Arm(plant, self.memory, in_sight=self.in_sight)
+        self.arrivals = {kind: Signal(f"{kind} seen") for kind in self.kit.kinds}
+        self.refilled: Signal = plant.refilled
+        self.downstream_changed: Signal = plant.downstream.changed
+        self.reserve_downstream = plant.downstream.reserve
+        self.wait_s = self.calibration.wait_s(len(self.kit.kinds))
+        self.reach_s = self.calibration.look_s + self.calibration.reach_s + self.calibration.close_s
+        self._turn_s = self.calibration.pick_and_place_s + self.calibration.test_s
+        self.sensors.noticed = self._noticed
+        plant.downstream.answer = self._answered
+        plant.downstream.told = self._ready_line
+
+    # ------------------------------------------------------------------------------------- pictures
+
+    def look(self, kind: str) -> bool:
+        """Take a picture and remember what is in it; False without a picture."""
+        glimpses = self.sensors.look(kind)
+        if glimpses is None:
+            self.evidence.note("camera")
+            return False
+        wanted = self.kit.by_kind[kind].wanted
+        for record in self.memory.see_all(kind, glimpses, self.scheduler.now):
+            self._judge_variant(record, wanted)
+        return True
+
+    def spot(self, wanted: str, *, patient: bool = False) -> PartRecord | None:
+        """The part of this kind or variant to pick next, in a fresh picture.
+
+        `patient`: rather one that will still be there when all others who wait for the arm have had it.
+        """
+        if not self.look(self.kind(wanted)):
+            return None
+        now, found = self.scheduler.now, None
+        if patient:
+            found = self.memory.candidate(wanted, now, self.reach_s + self.arm.ahead * self._turn_s)
+        return found or self.memory.candidate(wanted, now, self.reach_s)
+
+    def in_sight(self, wanted: str) -> bool:
+        """Is one remembered, or in a fresh picture, that can be reached?"""
+        found = self.memory.candidate(wanted, self.scheduler.now, self.reach_s)
+        return found is not None or self.spot(wanted) is not None
+
+    # -------------------------------------------------------------------------------------- handles
+
+    def kind(self, name: str) -> str:
+        """The part kind of a kind or variant; aborts if there is none of that name."""
+        kind = self.kit.kind_of.get(name)
+        if kind is None:
+            raise Aborted(f"no part is called {name}")
+        return kind
+
+    def tray(self, handle: str) -> TrayRecord | None:
+        """What is remembered of a tray; None once it has left; aborts for what is no tray."""
+        tray = self.memory.trays.get(handle)
+        if tray is None and not (handle.startswith(TRAY) and self.memory.was_given(handle)):
+            raise Aborted(f"{handle} is no tray")
+        return tray
+
+    def free_place(self) -> int:
+        """A free place of the tray area, or -1."""
+        taken = {tray.place for tray in self.memory.trays.values() if tray.state == "area"}
+        return next((place for place in range(self.kit.places) if place not in taken), -1)
+
+    def place_pose(self, place: int) -> tuple[float, float]:
+        """Where the tray in that place stands (m)."""
+        return (0.4 * place, 0.5)
+
+    # ---------------------------------------------------------------------------------------- order
+
+    def rank(self, kind: str) -> int:
+        """The rank of a turn for this kind: opportunistic when its arrival was awaited (uses that up), else
+        fixed.
+        """
+        if self.memory.due[kind] > 0:
+            self.memory.due[kind] -= 1
+            return OPPORTUNE
+        return FIXED + self.kit.priority[kind]
+
+    # -------------------------------------------------------------------------------- what comes in
+
+    def _noticed(self, glimpse: Glimpse) -> None:
+        now = self.scheduler.now
+        self.memory.prune(glimpse.kind, now)
+        record = self.memory.see(glimpse, now)
+        self._judge_variant(record, self.kit.by_kind[glimpse.kind].wanted)
+        self.arm.noticed(glimpse.kind)
+        self.arrivals[glimpse.kind].fire()
+
+    def _judge_variant(self, record: PartRecord, wanted: str) -> None:
+        if len(record.votes) == 1 and wanted in record.votes:
+            return
+        for variant, votes in record.votes.items():
+            if variant != wanted and votes >= 3:
+                self.evidence.against("AS", f"a part looks like {variant}")
+
+    def _answered(self, verdict: Verdict) -> None:
+        if verdict.accepted:
+            for assumption in ("AQ", "AS", "ACT"):
+                self.evidence.supports(assumption)
+        for reason in verdict.reasons:
+            if reason in _TELLS:
+                self.evidence.against(_TELLS[reason], f"downstream rejected a kit: {reason}")
+
+    def _ready_line(self, ready: bool) -> None:
+        if ready:
+            self.evidence.note("ready")
+            self.evidence.forget("ADD")
+        else:
+            self.evidence.against("ADD", "downstream signals that it takes no trays")
+
+
+_TELLS = {"bad": "AQ", "damaged tray": "AQ", "missing": "ACT", "wrong variant": "AS", "refused": "ADD"}
+"""What downstream's reasons for a rejection tell about the assumptions."""

@@ -1,0 +1,120 @@
+"""Downstream automation: takes full trays, judges them by what is truly in them, and can refuse (R §8.1).
+
+What the cell can sense of it: the ready line (`ready`, with the signal `changed`), a promised place
+(`reserve`), a refusal at the moment of handing over, and a verdict some seconds after it took a tray, with
+reasons but without causes. The causes (numbers of faults) are for the record of the run only.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from planner_reactor.runtime.scheduler import Scheduler
+from planner_reactor.runtime.signals import Signal
+from planner_reactor.workcell.calibration import Calibration
+from planner_reactor.workcell.kit import KitSpec
+from planner_reactor.workcell.things import Part, Tray
+
+REASONS = ("refused", "missing", "bad", "damaged", "wrong variant", "wrong kind", "damaged tray")
+
+
+@dataclass(frozen=True, slots=True)
+class Verdict:
+    """What downstream says of a tray: its tag, whether it serves, and why not."""
+
+    tag: str
+    accepted: bool
+    reasons: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Rejection:
+    """A kit that was lost: when, why, and the numbers of the faults that spoiled it (empty: our own doing).
+    """
+
+    time: float
+    tray: int
+    reasons: tuple[str, ...]
+    faults: tuple[int, ...]
+
+
+class Downstream:
+    """Judges, counts, and tells. `answer` hears each verdict after `verdict_s`, `told` each change of the
+    line.
+    """
+
+    def __init__(self, kit: KitSpec, calibration: Calibration, scheduler: Scheduler) -> None:
+        self.ready = True
+        self.changed = Signal("downstream")
+        self.completed = 0
+        self.rejections: list[Rejection] = []
+        self.blocked_by: tuple[int, ...] = ()
+        self.answer: Callable[[Verdict], None] = lambda verdict: None
+        self.told: Callable[[bool], None] = lambda ready: None
+        self._reserved_until = -1.0
+        self._kit = kit
+        self._calibration = calibration
+        self._scheduler = scheduler
+
+    def block(self, mark: int) -> None:
+        """Stop taking trays (but keep a promise)."""
+        self.ready = False
+        self.blocked_by = (mark,)
+        self._tell()
+
+    def unblock(self) -> None:
+        """Take trays again."""
+        self.ready = True
+        self.blocked_by = ()
+        self._tell()
+
+    def reserve(self) -> bool:
+        """Promise a place for the next tray, for some time; False if blocked."""
+        if self.ready:
+            self._reserved_until = self._scheduler.now + self._calibration.reservation_s
+        return self.ready
+
+    def take(self, tray: Tray) -> Verdict:
+        """A tray is pushed out: refused and lost if blocked, else judged. The verdict is told later."""
+        now = self._scheduler.now
+        if not self.ready and now > self._reserved_until:
+            faulty: list[tuple[str, tuple[int, ...]]] = [("refused", self.blocked_by)]
+        else:
+            faulty = self._faults(tray)
+        self._reserved_until = -1.0
+        reasons = tuple(dict.fromkeys(reason for reason, _ in faulty))
+        verdict = Verdict(tray.tag, not faulty, reasons)
+        if faulty:
+            causes = tuple(dict.fromkeys(mark for _, marks in faulty for mark in marks))
+            self.rejections.append(Rejection(now, tray.number, reasons, causes))
+        else:
+            self.completed += 1
+        self._scheduler.call_after(self._calibration.verdict_s, lambda: self.answer(verdict))
+        return verdict
+
+    def _tell(self) -> None:
+        self.told(self.ready)
+        self.changed.fire(self.ready)
+
+    def _faults(self, tray: Tray) -> list[tuple[str, tuple[int, ...]]]:
+        found: list[tuple[str, tuple[int, ...]]] = []
+        if not tray.good:
+            found.append(("damaged tray", tray.marks))
+        for kind in self._kit.kinds:
+            part = tray.slots.get(kind)
+            if part is None:
+                found.append(("missing", tray.marks))
+            else:
+                found.extend((reason, part.marks) for reason in self._wrong(part, kind))
+        return found
+
+    def _wrong(self, part: Part, slot: str) -> list[str]:
+        if part.damaged:
+            return ["damaged"]
+        if part.kind != slot:
+            return ["wrong kind"]
+        reasons = [] if part.good else ["bad"]
+        if part.variant not in self._kit.by_kind[slot].accepted:
+            reasons.append("wrong variant")
+        return reasons
