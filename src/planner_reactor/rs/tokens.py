@@ -91,7 +91,7 @@ class Cursor:
 
     def skip_to_definition(self) -> None:
         """Goes on to the next line that begins a definition, or to the end."""
-        found = DEFINITION.search(self.source.text, self.at + 1)
+        found = DEFINITION.search(self.source.text, self.at)
         self._matches = TOKEN.finditer(self.source.text, found.start() if found else len(self.source.text))
         self._nesting = 0
         self.advance()
