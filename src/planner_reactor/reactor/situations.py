@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable, Hashable, Iterator
-from typing import Protocol, TypeAlias
+from typing import TypeAlias
 
 from planner_reactor.reactor.instances import (
     Inhibition,
@@ -23,16 +23,7 @@ from planner_reactor.reactor.instances import (
     Situation,
     Strand,
 )
-
-
-class Waker(Protocol):
-    """What the store asks of the executer."""
-
-    def ended(self, strand: Strand, ok: bool, values: tuple[object, ...], cause: str) -> None:
-        """The process that this strand waits in ends, inside the present step."""
-
-    def wake(self, strand: Strand) -> None:
-        """The process that this strand waits in may try again, as a step of its own."""
+from planner_reactor.reactor.wakers import Waker
 
 
 Notice: TypeAlias = Callable[..., None]
@@ -64,6 +55,14 @@ class Situations:
     @property
     def instances(self) -> dict[int, Instance]:
         return self._instances
+
+    @property
+    def held(self) -> list[Situation]:
+        """The situations that something inhibits."""
+        return [s for s in self._by_name.values() if s.inhibitions]
+
+    def is_disabled(self, name: str, assumption: str) -> bool:
+        return any(held.owner == ("assumption", assumption) for held in self.named(name).inhibitions)
 
     def get(self, situation: str, number: object) -> Instance | None:
         instance = self._instances.get(number) if isinstance(number, int) else None
@@ -191,11 +190,11 @@ class Situations:
         instance.bodies += 1
         self._notice("entered", situation=instance.situation.name, instance=instance.number, guard=reaction[0])
 
-    def leave(self, instance: Instance, reaction: Reaction) -> None:
-        """A body ended (or was aborted): the instance may be served again, or be complete."""
+    def leave(self, instance: Instance, reaction: Reaction, *, cut: bool = False) -> None:
+        """A body ended, or was `cut` from outside: the instance may be served again, or be complete."""
         instance.bodies -= 1
         situation = instance.situation
-        self._notice("left", situation=situation.name, instance=instance.number, guard=reaction[0])
+        self._notice("left", situation=situation.name, instance=instance.number, guard=reaction[0], cut=cut)
         if not instance.bodies and instance.status == "on" and (instance.withdrawn or situation.disabled):
             self._end([(instance, False, "withdrawn" if instance.withdrawn else "assumption")])
         if (served := situation.reactions.get(reaction)) is not None:

@@ -47,6 +47,9 @@ class Step:
 Result: TypeAlias = tuple[str, tuple[Value, ...], Run, Store]
 Rule: TypeAlias = Callable[[Leaf, Spot, Store, World], Result | None]
 
+TIE = 1e-8
+"""Seconds within which two instants are one: ages are rounded to nine places."""
+
 OK = "ok"
 AB = "ab"
 WAITS = "wait"
@@ -122,12 +125,12 @@ def _is_number(value: Value) -> bool:
 def _ended(spot: Spot, leaf: Leaf, config: Config, world: World) -> Iterator[Step]:
     """`tau:ΩB`, `tau:℧B` inside the window; urgent only at its end."""
     low, high = window(leaf, world)
-    if not low <= leaf.age <= high:
+    if not low - TIE <= leaf.age <= high + TIE:
         return
     for ok, values in _endings(leaf, world):
         term = Ended(ok, _results(leaf, values), "" if ok else "failed")
         label = (leaf.name, leaf.arguments, OK if ok else AB, values)
-        yield _settled(label, config.put(spot, term), world, urgent=leaf.age >= high)
+        yield _settled(label, config.put(spot, term), world, urgent=leaf.age >= high - TIE)
 
 
 def _endings(leaf: Leaf, world: World) -> Iterator[tuple[bool, tuple[Value, ...]]]:

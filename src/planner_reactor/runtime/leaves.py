@@ -7,16 +7,17 @@ Running a leaf is a step. A leaf whose arguments have no value is one step too, 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable
+from collections.abc import Callable
 from dataclasses import dataclass
+from heapq import heappush
 
 from planner_reactor.rs.expressions import EvaluationError, is_number
-from planner_reactor.rs.terms import Value
+from planner_reactor.rs.terms import Expression, Value
 from planner_reactor.runtime.instructions import enter
 from planner_reactor.runtime.kernel import Kernel
-from planner_reactor.runtime.outcomes import Control, OpensBody, Outcome
-from planner_reactor.runtime.strands import RUNNING, WAITING, Instruction, Strand
-from planner_reactor.runtime.values import Tuples
+from planner_reactor.runtime.outcomes import STOPPED, Control, OpensBody, Outcome
+from planner_reactor.runtime.strands import RUNNING, WAITING, Frame, Instruction, Strand, Where
+from planner_reactor.runtime.values import Reader, Slots, Tuples
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -25,13 +26,15 @@ class Setting:
 
     kernel: Kernel
     name: str
+    where: Where
+    terms: tuple[Expression, ...]
+    slots: Slots
     arguments: Tuples
+    readers: tuple[Reader, ...]
     targets: tuple[int, ...]
     ok: Instruction
     ab: Instruction
     failed: Mistake
-    zone: int
-    site: Hashable
 
 
 class Mistake:
@@ -39,16 +42,15 @@ class Mistake:
     error).
     """
 
-    __slots__ = ("ab", "kernel", "name", "site", "zone")
+    __slots__ = ("ab", "kernel", "name", "where")
     silent = False
     resting = False
 
-    def __init__(self, kernel: Kernel, name: str, ab: Instruction, *, zone: int, site: Hashable) -> None:
+    def __init__(self, kernel: Kernel, name: str, ab: Instruction, where: Where) -> None:
         self.kernel = kernel
         self.name = name
         self.ab = ab
-        self.zone = zone
-        self.site = site
+        self.where = where
 
     def run(self, strand: Strand) -> Instruction | None:
         kernel = self.kernel
@@ -56,38 +58,36 @@ class Mistake:
         if kernel.observer is not None:
             kernel.observer((self.name, (), "ab", ()))
         strand.cause = "error"
-        kernel.note("mistake", name=self.name, place=str(self.site), root=strand.root.name)
+        kernel.note("mistake", name=self.name, place=str(self.where.site), root=strand.root.name)
         return self.ab
 
 
 class Test:
-    """GTR, LST, Equal: stops if it holds, else aborts; at once."""
+    """GTR, LST, Equal: stops if it holds, else aborts; at once. `holds` asks it of the frame."""
 
-    __slots__ = ("ab", "arguments", "failed", "holds", "kernel", "name", "ok", "site", "zone")
+    __slots__ = ("ab", "arguments", "failed", "holds", "kernel", "name", "ok", "where")
     silent = False
     resting = False
 
-    def __init__(self, setting: Setting, holds: Callable[..., bool]) -> None:
+    def __init__(self, setting: Setting, holds: Callable[[Frame], bool]) -> None:
         self.kernel = setting.kernel
         self.name = setting.name
         self.arguments = setting.arguments
         self.ok = setting.ok
         self.ab = setting.ab
         self.failed = setting.failed
-        self.zone = setting.zone
-        self.site = setting.site
+        self.where = setting.where
         self.holds = holds
 
     def run(self, strand: Strand) -> Instruction | None:
         try:
-            values = self.arguments(strand.frame)
+            holds = self.holds(strand.frame)
         except EvaluationError:
             return self.failed.run(strand)
-        holds = self.holds(*values)
         kernel = self.kernel
         kernel.steps += 1
         if kernel.observer is not None:
-            kernel.observer((self.name, values, "ok" if holds else "ab", ()))
+            kernel.observer((self.name, self.arguments(strand.frame), "ok" if holds else "ab", ()))
         if holds:
             return self.ok
         strand.cause = "failed"
@@ -105,12 +105,8 @@ class Ran:
         self.setting = setting
 
     @property
-    def zone(self) -> int:
-        return self.setting.zone
-
-    @property
-    def site(self) -> Hashable:
-        return self.setting.site
+    def where(self) -> Where:
+        return self.setting.where
 
     def run(self, strand: Strand) -> Instruction | None:
         setting, kernel = self.setting, self.setting.kernel
@@ -132,51 +128,61 @@ class Ran:
 
 
 class Pass:
-    """Delay, SUSPEND, Term: stops when its time has passed. `seconds` gives the age at which this one ends."""
+    """Delay, SUSPEND, Term: stops when its time has passed. `adapt` gives the age at which this one ends."""
 
-    __slots__ = ("arguments", "kernel", "name", "ok", "seconds", "setting", "site", "zone")
+    __slots__ = ("_age", "_scheduler", "adapt", "arguments", "kernel", "name", "ok", "setting", "where")
     silent = False
     resting = False
 
-    def __init__(self, setting: Setting, seconds: Callable[[float, Kernel], float] | None = None) -> None:
+    def __init__(self, setting: Setting, adapt: Callable[[float, Kernel], float] | None = None) -> None:
         self.setting = setting
         self.kernel = setting.kernel
         self.name = setting.name
         self.arguments = setting.arguments
         self.ok = setting.ok
-        self.zone = setting.zone
-        self.site = setting.site
-        self.seconds = seconds
+        self.where = setting.where
+        self.adapt = adapt
+        (self._age,) = setting.readers
+        self._scheduler = setting.kernel.scheduler
 
     def run(self, strand: Strand) -> Instruction | None:
         kernel = self.kernel
         try:
-            (age,) = values = self.arguments(strand.frame)
-        except (EvaluationError, ValueError):
+            age = self._age(strand.frame)
+        except EvaluationError:
             return self.setting.failed.run(strand)
-        if age.__class__ is not float and not is_number(age):
-            kernel.steps += 1
-            observe(kernel, self.name, values, ok=False)
-            strand.cause = "error"
-            return self.setting.ab
-        if self.seconds is not None:
-            age = self.seconds(age, kernel)  # type: ignore[arg-type]
+        if not (age.__class__ is float or age.__class__ is int or is_number(age)):
+            return self._mistaken(strand)
+        if self.adapt is not None:
+            age = self.adapt(age, kernel)  # type: ignore[arg-type]
         if age <= 0:  # type: ignore[operator]
             kernel.steps += 1
-            observe(kernel, self.name, values, ok=True)
+            observe(kernel, self.name, self.arguments(strand.frame), ok=True)
             return self.ok
-        scheduler = kernel.scheduler
         strand.pc = self
         strand.state = WAITING
-        strand.link = scheduler.wait(scheduler.now + age, strand)  # type: ignore[operator]
+        scheduler = self._scheduler
+        strand.link = ticket = next(scheduler.tickets)
+        heappush(scheduler.queue, (scheduler.now + age, ticket, self, strand))  # type: ignore[operator]
         return None
 
-    def elapsed(self, strand: Strand) -> None:
+    def _mistaken(self, strand: Strand) -> Instruction:
+        self.kernel.steps += 1
+        observe(self.kernel, self.name, self.arguments(strand.frame), ok=False)
+        strand.cause = "error"
+        return self.setting.ab
+
+    def elapsed(self, strand: Strand, ticket: int) -> None:
+        if strand.link != ticket or strand.state != WAITING:
+            return
         kernel = self.kernel
         kernel.steps += 1
         if kernel.observer is not None:
             kernel.observer((self.name, self.arguments(strand.frame), "ok", ()))
         kernel.resume(strand, self.ok)
+
+    def awaits(self, strand: Strand, ticket: int) -> bool:
+        return strand.link == ticket and strand.state == WAITING
 
     def cancel(self, strand: Strand) -> None:
         self.kernel.scheduler.withdrawn()
@@ -194,13 +200,12 @@ def at_most(age: float, kernel: Kernel) -> float:
 class Never:
     """NIL: neither stops nor aborts."""
 
-    __slots__ = ("site", "zone")
+    __slots__ = "where"
     silent = False
     resting = True
 
     def __init__(self, setting: Setting) -> None:
-        self.zone = setting.zone
-        self.site = setting.site
+        self.where = setting.where
 
     def run(self, strand: Strand) -> Instruction | None:
         strand.pc = self
@@ -218,24 +223,25 @@ class Use:
     strand (`spawns`), which finds the context in `value`.
     """
 
-    __slots__ = ("close", "control", "kernel", "setting", "slot", "spawns")
+    __slots__ = ("_announces", "_arguments", "_start", "ab", "close", "control", "kernel", "name", "ok", "setting", "site",
+                 "slot", "spawns", "targets", "zone")  # fmt: skip
     silent = False
 
     def __init__(self, setting: Setting, control: Control) -> None:
         self.setting = setting
         self.kernel = setting.kernel
+        self.name = setting.name
+        self.targets = setting.targets
+        self.ok = setting.ok
+        self.ab = setting.ab
+        self.where = setting.where
         self.control = control
         self.slot = -1
         self.close: Instruction | None = None
         self.spawns = False
-
-    @property
-    def zone(self) -> int:
-        return self.setting.zone
-
-    @property
-    def site(self) -> Hashable:
-        return self.setting.site
+        self._arguments = setting.arguments
+        self._start = control.start
+        self._announces = control.announces
 
     @property
     def resting(self) -> bool | Callable[[Strand], bool]:
@@ -247,19 +253,20 @@ class Use:
         return self.slot >= 0
 
     def run(self, strand: Strand) -> Instruction | None:
-        kernel, setting, control = self.kernel, self.setting, self.control
         strand.pc = self
         try:
-            values = setting.arguments(strand.frame)
+            values = self._arguments(strand.frame)
         except EvaluationError:
-            return setting.failed.run(strand)
+            return self.setting.failed.run(strand)
+        kernel = self.kernel
         strand.state = WAITING
-        outcome = control.start(strand, values)
+        outcome = self._start(strand, values)
         if outcome is None:
-            if control.announces:
+            if self._announces:
                 kernel.steps += 1
-                observe(kernel, setting.name, values, ok=True, status="wait")
-            kernel.moved(strand)
+                observe(kernel, self.name, values, ok=True, status="wait")
+            if kernel.watched:
+                kernel.moved(strand)
             return None
         strand.state = RUNNING
         onward = self.finish(strand, values, outcome)
@@ -273,24 +280,24 @@ class Use:
         kernel = self.kernel
         kernel.steps += 1
         if kernel.observer is not None:
-            kernel.observer((self.setting.name, values, "ok" if outcome.ok else "ab", outcome.values))
-        return self.take(strand, outcome)
+            kernel.observer((self.name, values, "ok" if outcome.ok else "ab", outcome.values))
+        return self.ok if outcome is STOPPED and self.slot < 0 else self.take(strand, outcome)
 
     def take(self, strand: Strand, outcome: Outcome) -> Instruction:
         """Bind the results and begin the body, if one follows; where to go on."""
         strand.link = None
         frame = strand.frame
-        for slot, value in zip(self.setting.targets, outcome.values, strict=False):
+        for slot, value in zip(self.targets, outcome.values, strict=False):
             frame[slot] = value
         if not outcome.ok:
             strand.cause = outcome.cause or "failed"
-            return self.setting.ab
+            return self.ab
         if self.spawns:
             strand.value = outcome.context
         elif self.close is not None:
             opener: OpensBody = self.control  # type: ignore[assignment]  # it has a body to close
             enter(self.kernel, strand, opener, outcome.context, self.slot, self.close)
-        return self.setting.ok
+        return self.ok
 
     def cancel(self, strand: Strand) -> None:
         self.control.cancel(strand)

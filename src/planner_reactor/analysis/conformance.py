@@ -1,0 +1,82 @@
+"""Does a run do only what the semantics allows? Follow its labels, step by step, through `rs.evolves`.
+
+A `Follower` holds every configuration that the run may be in (a label may fit several steps). It is told the labels
+that an observer of a run sees, and the time that passes; where nothing fits, the run and the semantics disagree.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+
+from planner_reactor.errors import PlannerReactorError
+from planner_reactor.rs.evolves import Config, Ending, Label, Oracle, World, started
+from planner_reactor.rs.leaves import elapsed, slack, steps
+from planner_reactor.rs.states import Bindings, Ended
+from planner_reactor.rs.terms import Process, Value
+
+TOLERANCE = 1e-6
+"""Seconds by which two clocks may differ."""
+
+
+class Disagreement(PlannerReactorError):
+    """A run did what the semantics does not allow."""
+
+
+class Follower:
+    """Follows one run of some processes that were started together."""
+
+    def __init__(self, processes: Iterable[Process], world: World) -> None:
+        self._world = world
+        config = Config()
+        for process in processes:
+            config = started(process, world, config=config)
+        self.configs: frozenset[Config] = frozenset({config})
+        self.steps = 0
+
+    def saw(self, label: Label) -> None:
+        """The run took a step with this label."""
+        name, arguments, status, values = label
+        world = replace(self._world, endings=_oracle(name, arguments, status == "ok", values))
+        after = {
+            step.after for config in self.configs for step in steps(config, world) if step.label == label
+        }
+        if not after:
+            offered = sorted({str(s.label) for c in self.configs for s in steps(c, self._world)})
+            raise Disagreement(f"step {self.steps + 1}: saw {label}, allowed: {'; '.join(offered) or 'nothing'}")
+        self.configs = frozenset(after)
+        self.steps += 1
+
+    def passed(self, seconds: float) -> None:
+        """The run let this much time pass."""
+        if seconds <= 0:
+            return
+        patient = [c for c in self.configs if not any(s.urgent for s in steps(c, self._world))]
+        if not patient:
+            urgent = sorted({str(s.label) for c in self.configs for s in steps(c, self._world) if s.urgent})
+            raise Disagreement(f"{seconds} s passed though something is urgent: {'; '.join(urgent)}")
+        allowed = [c for c in patient if slack(c, self._world) >= seconds - TOLERANCE]
+        if not allowed:
+            raise Disagreement(f"{seconds} s passed, at most {max(slack(c, self._world) for c in patient)} allowed")
+        self.configs = frozenset(elapsed(c, min(seconds, slack(c, self._world))) for c in allowed)
+
+    def ended(self, root: int, *, ok: bool, results: Bindings) -> None:
+        """The run says that this root (1, 2, …) has ended so."""
+        fitting = [c for c in self.configs if c.root(root) == Ended(ok, results)]
+        if not fitting:
+            raise Disagreement(f"root {root} ended with {ok}, {results}; allowed: {[c.root(root) for c in self.configs]}")
+        self.configs = frozenset(fitting)
+
+    def runs(self, root: int) -> None:
+        """The run says that this root has not ended."""
+        fitting = [c for c in self.configs if not isinstance(c.root(root), Ended)]
+        if not fitting:
+            raise Disagreement(f"root {root} runs; it should have ended: {[c.root(root) for c in self.configs]}")
+        self.configs = frozenset(fitting)
+
+
+def _oracle(name: str, arguments: tuple[Value, ...], ok: bool, values: tuple[Value, ...]) -> Oracle:
+    def endings(asked: str, given: tuple[Value, ...]) -> Iterable[Ending]:
+        return [(ok, values)] if (asked, given) == (name, arguments) else []
+
+    return endings

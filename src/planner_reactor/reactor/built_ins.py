@@ -1,0 +1,48 @@
+"""All of the reactor's built-in processes over one store of situations, ready for an executer.
+
+    built_in = BuiltIns(scheduler, assumptions)
+    executer = Executer(program, scheduler=scheduler, controls=built_in.controls, on_end=…)
+    built_in.attach(executer)
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from planner_reactor.reactor.controls import Controls
+from planner_reactor.reactor.guards import Guards
+from planner_reactor.reactor.monitors import Monitors
+from planner_reactor.reactor.situations import Situations
+from planner_reactor.reactor.wakers import ExecuterWaker
+from planner_reactor.rs.terms import Value
+from planner_reactor.runtime import Control, Executer, Scheduler
+
+
+def _unheard(*_: Any, **__: Any) -> None:
+    """Nobody listens."""
+
+
+class BuiltIns:
+    """The store and its controls. Whoever owns the executer must pass each ended root to `situations.root_ended`."""
+
+    def __init__(
+        self,
+        scheduler: Scheduler,
+        assumptions: Mapping[str, Callable[[], bool | None]] | None = None,
+        *,
+        notice: Callable[..., None] = _unheard,
+        assumed: Callable[[str, bool], None] = _unheard,
+        reached: Callable[[str, int | None], None] = _unheard,
+        told: Callable[[str, tuple[Value, ...]], None] = _unheard,
+    ) -> None:
+        self._waker = ExecuterWaker()
+        self.situations = Situations(self._waker, notice)
+        self.guards = Guards(self.situations, self._waker, notice)
+        situation_processes = Controls(self.situations)
+        self._waker.ended_wait = situation_processes.granted
+        monitors = Monitors(scheduler, assumptions or {}, assumed, reached, told)
+        self.controls: tuple[Control, ...] = (*situation_processes, *self.guards, *monitors)
+
+    def attach(self, executer: Executer) -> None:
+        self._waker.executer = executer

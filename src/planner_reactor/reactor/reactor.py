@@ -1,0 +1,300 @@
+"""The reactor: equation (3) of R §5.3, running, and how it is changed.
+
+    REACTOR = ADD<m> :: (E[m] # P[m])
+
+It starts empty (the *null reactor*) and acts from its first reaction on, planner or no planner. Adaptations come in by
+`receive`; what it perceives goes out through the channel; every structural change, situation and signal is in the
+trace; the laws are asked after every event. A failed assumption disables, at once, the situations that rest on it.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Hashable, Iterable
+from typing import Any
+
+from planner_reactor.errors import RefusedError
+from planner_reactor.link.channels import PerceptionChannel
+from planner_reactor.link.messages import Adaptation, PerceptionKind
+from planner_reactor.reactor.adaptation import Transaction, Transactions, drained, refuse_unsafe_kills
+from planner_reactor.reactor.admission import Standing, examine
+from planner_reactor.reactor.bounds import Bounds
+from planner_reactor.reactor.built_ins import BuiltIns
+from planner_reactor.reactor.laws import Laws
+from planner_reactor.reactor.structure import REACTION, Reaction
+from planner_reactor.rs.parser import parse_program
+from planner_reactor.rs.printer import show
+from planner_reactor.rs.terms import Process, Program, Value, operands
+from planner_reactor.rs.vocabulary import BUILT_IN
+from planner_reactor.runtime import Budgets, Executer, Host, Root, Scheduler
+from planner_reactor.trace import Trace
+
+EQUATION_3 = f"REACTOR = ADD<m> :: (E[m] # {REACTION}[m])"
+
+TOLD_CAUSES = frozenset({"failed", "error", "budget", "assumption"})
+"""Causes of failed instances that the planner hears of; the others follow from what it knows already."""
+
+MARGIN = 1.0
+"""Seconds added to a computed bound, for the monitors and the clock."""
+
+
+class Reactor:
+    """One running reactor on a scheduler. `host` brings its basic processes, functions and assumptions."""
+
+    def __init__(
+        self,
+        scheduler: Scheduler,
+        *,
+        host: Host | None = None,
+        perceptions: PerceptionChannel | None = None,
+        trace: Trace | None = None,
+        budgets: Budgets | None = None,
+        observer: Any = None,
+    ) -> None:
+        self.scheduler = scheduler
+        self.host = host or Host("none")
+        self.perceptions = perceptions or PerceptionChannel()
+        self.trace = trace or Trace(lambda: scheduler.now, keep=False)
+        self.budgets = budgets or Budgets()
+        self.reactions: dict[int, Reaction] = {}
+        self.failed: dict[str, float] = {}  # assumptions that have failed, and since when
+        self.counts: Counter[str] = Counter(received=0, applied=0, refused=0, timed_out=0, changes_applied=0)
+        self.stub_triggers = 0
+        self._versions: dict[str, int] = {}
+        self._rests_on: dict[str, tuple[str, ...]] = {}
+        self._version_of_label: dict[int, int] = {}
+        self._loaded: dict[int, Reaction] = {}
+        self._highest_label = -1
+        self.laws = Laws(self)
+        self._watches = {
+            "added": self._reaction_added,
+            "removed": self._reaction_removed,
+            "ended": self._instance_ended,
+            "absent_guard": self._absent_guard,
+        }
+        built_in = BuiltIns(
+            scheduler,
+            self.host.assumptions,
+            notice=self.notice,
+            assumed=self.assumption_sensed,
+            reached=self._stub_reached,
+            told=self._information,
+        )
+        self.situations = built_in.situations
+        self.executer = Executer(
+            parse_program(EQUATION_3, file="<reactor>"),
+            scheduler=scheduler,
+            host=host,
+            controls=built_in.controls,
+            observer=observer,
+            trace=self.trace,
+            budgets=self.budgets,
+            on_end=self._root_ended,
+        )
+        built_in.attach(self.executer)
+        self.transactions = Transactions(self.executer, scheduler, self._finished)
+        self.host.listen(lambda assumption, holds, evidence: self.assumption_sensed(assumption, holds))
+
+    def start(self) -> Root:
+        """Begin to act, with no reactions yet."""
+        self.root = self.executer.start("REACTOR")
+        return self.root
+
+    # -- adaptation
+
+    def receive(self, adaptation: Adaptation) -> None:
+        """Take an adaptation: refused whole, with a reason, or begun (its outcome is a perception)."""
+        self.counts["received"] += 1
+        self.trace.record("adaptation_received", id=adaptation.id, purpose=adaptation.purpose)
+        try:
+            reactions = examine(adaptation, self._standing())
+            refuse_unsafe_kills(adaptation, tuple(self.reactions[label] for label in adaptation.kills))
+        except RefusedError as refusal:
+            self.counts["refused"] += 1
+            self.trace.record("adaptation_refused", id=adaptation.id, reason=refusal.reason, message=str(refusal))
+            self.perceive("adaptation_refused", str(adaptation.id), cause=refusal.reason, values=(str(refusal),))
+            return
+        bound = self.bound(adaptation)
+        self._loaded |= {r.label: r for r in reactions}
+        self._highest_label = max([self._highest_label, *adaptation.adds])
+        for change in adaptation.changes:
+            self._versions.setdefault(change.situation, 0)
+        self._version_of_label |= {r.label: self._versions.get(r.situation or "", 0) + 1 for r in reactions}
+        self.situations.spawned.update(r.situation for r in reactions if r.situation and r.spawns)
+        self.transactions.begin(adaptation, reactions, bound)
+
+    def bound(self, adaptation: Adaptation) -> float:
+        """Seconds in which the adaptation will have been applied (R §5.5, *bounded*)."""
+        bounds = Bounds(
+            Program(r.schema for r in self.reactions.values()),
+            BUILT_IN | dict(self.host.signatures),
+            {name: process.limit for name, process in self.host.processes.items()},
+            self._bodies_serving,
+        )
+        return sum(bounds.situation(s) for s in drained(adaptation)) + MARGIN
+
+    def _bodies_serving(self, situation: str) -> tuple[Process, ...]:
+        serving = (r.schema.body for r in self.reactions.values() if r.situation == situation)
+        return tuple(operands(body)[1] for body in serving)
+
+    def _standing(self) -> Standing:
+        return Standing(
+            reactions=self.reactions,
+            versions=self._versions,
+            pending=self.transactions.pending_situations,
+            seen=self.transactions.seen,
+            epoch=self.transactions.epoch,
+            used_labels=range(self._highest_label + 1),
+            program=Program(r.schema for r in self._loaded.values()),
+            signatures=BUILT_IN | dict(self.host.signatures),
+            functions=self.host.functions,
+        )
+
+    def _root_ended(self, root: Root) -> None:
+        self.situations.root_ended(root)
+        self.transactions.ended(root)
+
+    def _finished(self, transaction: Transaction) -> None:
+        adaptation = transaction.adaptation
+        if transaction.state == "timed_out":
+            self._forget(r.label for r in transaction.reactions)
+            self.counts["timed_out"] += 1
+            self.trace.record("adaptation_timed_out", id=adaptation.id, bound=transaction.limit)
+            self.perceive("adaptation_timed_out", str(adaptation.id), cause="TIMEOUT")
+            return
+        self.counts["applied"] += 1
+        previous = [(c.situation, c.base, self._versions[c.situation]) for c in adaptation.changes]
+        self.laws.applied(adaptation.id, adaptation.epoch, previous)
+        for change in adaptation.changes:
+            self._versions[change.situation] += 1
+            self._rests_on[change.situation] = change.assumptions
+        for situation in adaptation.removed:
+            self._versions[situation] = self._versions.get(situation, 0) + 1
+            self._rests_on.pop(situation, None)
+        self._forget(adaptation.kills)
+        self._disable_what_must_be()
+        self.trace.record(
+            "adaptation_applied", id=adaptation.id, purpose=adaptation.purpose, assumptions=self.assumptions_in_use
+        )
+        self.perceive("adaptation_applied", str(adaptation.id))
+
+    def _forget(self, labels: Iterable[int]) -> None:
+        """Their definitions are not needed any more."""
+        gone = [self._loaded.pop(label) for label in labels if label in self._loaded]
+        self.executer.unload([reaction.schema for reaction in gone])
+        for reaction in gone:
+            self._version_of_label.pop(reaction.label, None)
+
+    # -- what happens in it
+
+    def notice(self, kind: str, **fields: Any) -> None:
+        """One change of the situations or guards: traced, watched by the laws, and acted on."""
+        self.trace.record(kind, **fields)
+        self.laws.happened(kind, fields)
+        if (watch := self._watches.get(kind)) is not None:
+            watch(**fields)
+
+    def perceive(
+        self,
+        kind: PerceptionKind,
+        subject: str,
+        *,
+        cause: str = "",
+        instance: int | None = None,
+        values: tuple[Value, ...] = (),
+    ) -> None:
+        """Tell the planner."""
+        self.perceptions.report(
+            kind, subject, time=self.scheduler.now, cause=cause, instance=instance, values=values
+        )
+
+    def _reaction_added(self, label: int) -> None:
+        self.reactions[label] = self._loaded[label]
+        self.counts["changes_applied"] += 1
+
+    def _reaction_removed(self, label: int) -> None:
+        self.reactions.pop(label, None)
+        self.counts["changes_applied"] += 1
+        if any(label in t.adaptation.kills for t in self.transactions.under_way):
+            self.transactions.killed(label)
+            self.perceive("guard_kill", str(label))
+        else:
+            self._forget([label])
+
+    def _absent_guard(self, label: Value) -> None:
+        self.perceive("error", str(label), cause="no such guard")
+
+    def _instance_ended(self, situation: str, instance: int, ok: bool, cause: str) -> None:
+        if not ok and cause in TOLD_CAUSES:
+            self.perceive("situation_failure", situation, cause=cause, instance=instance)
+
+    def _stub_reached(self, situation: str, instance: int | None) -> None:
+        self.stub_triggers += 1
+        self.trace.record("stub_trigger", situation=situation, instance=instance)
+        self.perceive("stub_trigger", situation, instance=instance)
+
+    def _information(self, name: str, values: tuple[Value, ...]) -> None:
+        self.trace.record("information", name=name, values=values)
+        self.perceive("information", name, values=values)
+
+    # -- assumptions
+
+    @property
+    def assumptions_in_use(self) -> tuple[str, ...]:
+        """The assumptions that some reaction rests on, sorted."""
+        return tuple(sorted({a for assumptions in self._rests_on.values() for a in assumptions}))
+
+    def resting_on(self, assumption: str) -> tuple[str, ...]:
+        return tuple(s for s, assumptions in self._rests_on.items() if assumption in assumptions)
+
+    def assumption_sensed(self, assumption: str, holds: bool) -> None:
+        """A monitor, or a process itself, says that an assumption fails, or that a failed one holds again."""
+        if holds:
+            if self.failed.pop(assumption, None) is not None:
+                self.trace.record("assumption_holds", assumption=assumption)
+                self.perceive("assumption_holds", assumption)
+                self._disable_what_must_be()
+            return
+        self.trace.record("assumption_failure", assumption=assumption)
+        self.failed.setdefault(assumption, self.scheduler.now)
+        self.perceive("assumption_failure", assumption)
+        self._disable_what_must_be()
+
+    def _disable_what_must_be(self) -> None:
+        """Exactly the situations that rest on a failed assumption are disabled by it."""
+        for situation in self.situations.held:
+            for owner in [h.owner for h in situation.inhibitions if h.kind == "assumption"]:
+                assumption = str(owner[1])  # type: ignore[index]  # ("assumption", name)
+                if assumption not in self.failed or assumption not in self._rests_on.get(situation.name, ()):
+                    self.situations.enable(situation.name, assumption)
+        for assumption in self.failed:
+            for name in self.resting_on(assumption):
+                self.situations.disable(name, assumption)
+
+    # -- how it stands
+
+    def version_of_label(self, label: int | None) -> int:
+        """The version of its situation that a reaction belongs to."""
+        return self._version_of_label.get(label, 0) if label is not None else 0
+
+    def is_live_owner(self, owner: Hashable) -> bool:
+        if isinstance(owner, Root):
+            return owner.outcome is None
+        return isinstance(owner, tuple) and owner[1] in self.failed
+
+    def over_budget(self) -> str | None:
+        live = self.executer.statistics().processes_live
+        if live > self.budgets.processes:
+            return f"{live} processes live, at most {self.budgets.processes}"
+        return None
+
+    @property
+    def versions(self) -> dict[str, int]:
+        return dict(self._versions)
+
+    def text(self) -> str:
+        """The reactor as a program that can be run: equation (3) with its present reactions."""
+        guarded = [f"(E[{label}] # {REACTION}[{label}])" for label in sorted(self.reactions)]
+        equation = " | ".join([*guarded, f"(ADD<m> :: (E[m] # {REACTION}[m]))"])
+        clauses = [show(self.reactions[label].schema) for label in sorted(self.reactions)]
+        return "\n".join([f"REACTOR = {equation}", *clauses]) + "\n"

@@ -1,0 +1,101 @@
+"""The shape of a reactor, read off its text: which reaction serves which situation, and what it asserts (R §5.4).
+
+A reaction is a clause `P[n] = …`; its situation is that of the SIT in front of its loop (None for a root reaction or a
+monitor). The situations and what their reactions assert form the hierarchy of R Figs 8 to 10, an acyclic digraph.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+
+from planner_reactor.rs.terms import Call, Loop, Number, Process, Schema, Spawn, Symbol, Text, calls
+
+REACTION = "P"
+"""The schema of which every reaction is a clause."""
+
+
+@dataclass(frozen=True, slots=True)
+class Reaction:
+    """One clause `P[label]`."""
+
+    label: int
+    schema: Schema
+    situation: str | None
+    asserts: tuple[str, ...]
+    stubs: bool
+    monitors: tuple[str, ...]
+
+    @property
+    def spawns(self) -> bool:
+        """Are all instances of its situation served at once (`::`)?"""
+        return isinstance(self.schema.body, Spawn)
+
+
+def reaction_of(schema: Schema) -> Reaction | None:
+    """The reaction that a clause describes, or None if it is not of the form `P[n] = …`."""
+    match schema:
+        case Schema(name=name, head=(Number(int() as label),)) if name == REACTION:
+            body = schema.body
+            return Reaction(
+                label,
+                schema,
+                served_by(body),
+                tuple(_named(body, "ASSERT", "REASSERT")),
+                any(True for _ in _named(body, "STUB")),
+                tuple(_named(body, "ASSUMONITOR", "HOLDMONITOR")),
+            )
+        case _:
+            return None
+
+
+def served_by(process: Process) -> str | None:
+    """The situation whose instances this process serves."""
+    match process:
+        case Loop(Call("SIT", (Symbol(name) | Text(name), *_)), _):
+            return name
+        case Spawn(Call("SIT", (Symbol(name) | Text(name), *_)), _):
+            return name
+        case _:
+            return None
+
+
+def _named(process: Process, *names: str) -> Iterator[str]:
+    """The first arguments of the calls with these names, each once, left to right."""
+    seen: set[str] = set()
+    for call in calls(process):
+        if call.name in names and call.arguments and isinstance(call.arguments[0], Symbol | Text):
+            first = call.arguments[0]
+            name = first.name if isinstance(first, Symbol) else first.value
+            if name not in seen:
+                seen.add(name)
+                yield name
+
+
+def children(reactions: Iterable[Reaction]) -> dict[str, tuple[str, ...]]:
+    """Situation → the situations that its reactions assert."""
+    found: dict[str, tuple[str, ...]] = {}
+    for reaction in reactions:
+        if reaction.situation is not None:
+            found[reaction.situation] = (*found.get(reaction.situation, ()), *reaction.asserts)
+    return found
+
+
+def cycle(below: Mapping[str, tuple[str, ...]]) -> tuple[str, ...] | None:
+    """A situation that is asserted from below itself, with the way round, or None."""
+    done: set[str] = set()
+    for start in below:
+        stack, trail = [(start, iter(below.get(start, ())))], [start]
+        while stack:
+            name, rest = stack[-1]
+            child = next(rest, None)
+            if child is None:
+                stack.pop()
+                trail.pop()
+                done.add(name)
+            elif child in trail:
+                return (*trail[trail.index(child) :], child)
+            elif child not in done:
+                stack.append((child, iter(below.get(child, ()))))
+                trail.append(child)
+    return None
