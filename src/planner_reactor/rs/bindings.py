@@ -160,13 +160,10 @@ class _Walk:
         )
 
     def _uses(self, call: Call, scope: Bound) -> None:
-        if scope is None:
-            return
         for name in names(call.arguments):
             place = name.place or call.place
-            if isinstance(name, Variable) and name.name not in scope:
-                hint = _binder(self._binders.get(name.name))
-                message = f"{name.name} may be unbound here"
+            if isinstance(name, Variable) and scope is not None and name.name not in scope:
+                message, hint = f"{name.name} may be unbound here", _binder(self._binders.get(name.name))
                 self.findings.append(warning(place, "may-be-unbound", message, hint))
             elif isinstance(name, Symbol) and name.name in self._binders:
                 bound_at = self._binders[name.name]
