@@ -32,10 +32,7 @@ def reachable(
 
 def cycles(edges: Mapping[N, Collection[N]]) -> list[list[N]]:
     """The largest sets of nodes that can all reach each other: Kosaraju's strongly connected components."""
-    backwards: dict[N, list[N]] = {}
-    for node, followings in edges.items():
-        for following in followings:
-            backwards.setdefault(following, []).append(node)
+    backwards = _backwards(edges)
     position = {node: number for number, node in enumerate(edges)}
     assigned: set[N] = set()
     found = []
@@ -65,6 +62,36 @@ def way_round(edges: Mapping[N, Iterable[N]], start: N) -> list[N]:
     return way[::-1]
 
 
+def solve(
+    edges: Mapping[N, Iterable[N]], start: V, transfer: Callable[[N, Mapping[N, V]], V]
+) -> Mapping[N, V]:
+    """The first solution, from `start` on, of value(n) = transfer(n, values), where transfer reads the values
+    of what follows n. It must be monotone."""
+    leading_here = _backwards(edges)
+    values = dict.fromkeys(edges, start)
+    waiting = deque(_finished(edges))
+    queued = set(waiting)
+    while waiting:
+        node = waiting.popleft()
+        queued.remove(node)
+        value = transfer(node, values)
+        if value != values[node]:
+            values[node] = value
+            again = [c for c in leading_here.get(node, ()) if c not in queued]
+            waiting.extend(again)
+            queued.update(again)
+    return values
+
+
+def _backwards(edges: Mapping[N, Iterable[N]]) -> Mapping[N, Mapping[N, None]]:
+    """What leads to each node."""
+    found: dict[N, dict[N, None]] = {}
+    for node, followings in edges.items():
+        for following in followings:
+            found.setdefault(following, {})[node] = None
+    return found
+
+
 def _finished(edges: Mapping[N, Iterable[N]]) -> list[N]:
     """The nodes with entries, each after those that were first reached through it."""
     seen: set[N] = set()
@@ -84,27 +111,3 @@ def _finished(edges: Mapping[N, Iterable[N]]) -> list[N]:
                 seen.add(following)
                 walk.append((following, iter(edges[following])))
     return finished
-
-
-def solve(
-    edges: Mapping[N, Iterable[N]], start: V, transfer: Callable[[N, Mapping[N, V]], V]
-) -> Mapping[N, V]:
-    """The first solution, from `start` on, of value(n) = transfer(n, values), where transfer reads the values
-    of what follows n. It must be monotone."""
-    callers: dict[N, list[N]] = {}
-    for node, followings in edges.items():
-        for following in followings:
-            callers.setdefault(following, []).append(node)
-    values = dict.fromkeys(edges, start)
-    waiting = deque(_finished(edges))
-    queued = set(waiting)
-    while waiting:
-        node = waiting.popleft()
-        queued.remove(node)
-        value = transfer(node, values)
-        if value != values[node]:
-            values[node] = value
-            again = [c for c in callers.get(node, ()) if c not in queued]
-            waiting.extend(again)
-            queued.update(again)
-    return values
