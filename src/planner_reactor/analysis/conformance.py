@@ -58,7 +58,7 @@ class Follower:
         allowed = [c for c in patient if slack(c, self._world) >= seconds - TOLERANCE]
         if not allowed:
             raise Disagreement(f"{seconds} s passed, at most {max(slack(c, self._world) for c in patient)} allowed")
-        self.configs = frozenset(elapsed(c, min(seconds, slack(c, self._world))) for c in allowed)
+        self.configs = frozenset(elapsed(c, min(seconds, slack(c, self._world)), self._world) for c in allowed)
 
     def ended(self, root: int, *, ok: bool, results: Bindings) -> None:
         """The run says that this root (1, 2, …) has ended so."""

@@ -110,7 +110,7 @@ def successors(config: Config, world: World) -> Iterator[Step]:
         return
     pause = min((d for d in _boundaries(config, world) if d > 0), default=inf)
     if (pause := min(pause, slack(config, world))) < inf:
-        yield Step(("TIME", (pause,), "ok", ()), elapsed(config, pause))
+        yield Step(("TIME", (pause,), "ok", ()), elapsed(config, pause, world))
 
 
 def _boundaries(config: Config, world: World) -> Iterator[float]:

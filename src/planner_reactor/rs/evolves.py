@@ -79,7 +79,7 @@ Ending: TypeAlias = tuple[bool, tuple[Value, ...]]
 Oracle: TypeAlias = Callable[[str, tuple[Value, ...]], Iterable[Ending]]
 """How a basic process may end, with which values: concrete runs are deterministic but for this."""
 
-UNFOLDING_LIMIT = 500
+UNFOLDING_LIMIT = 100
 """Calls that may unfold without a leaf between them; guardedness is checked when a program is loaded."""
 
 

@@ -169,16 +169,19 @@ def slack(config: Config, world: World) -> float:
     return min((window(i, world)[1] - i.age for i in leaves if isinstance(i, Leaf)), default=inf)
 
 
-def elapsed(config: Config, seconds: float) -> Config:
+def elapsed(config: Config, seconds: float, world: World) -> Config:
     """TIME: the same configuration, `seconds` later."""
-    return replace(config, roots=tuple((n, _older(t, seconds)) for n, t in config.roots))
+    return replace(config, roots=tuple((n, _older(t, seconds, world)) for n, t in config.roots))
 
 
-def _older(term: Run, seconds: float) -> Run:
+def _older(term: Run, seconds: float, world: World) -> Run:
     if isinstance(term, Leaf):
-        return replace(term, age=round(term.age + seconds, 9))
+        low, high = window(term, world)
+        age = round(term.age + seconds, 9)
+        # past its beginning, an endless window is the same at every age
+        return replace(term, age=age if high < inf else min(age, low) if low < inf else 0.0)
     parts = parts_of(term)
-    return with_parts(term, tuple(_older(p, seconds) for p in parts)) if parts else term
+    return with_parts(term, tuple(_older(p, seconds, world) for p in parts)) if parts else term
 
 
 # -------------------------------------------------------------------------------------------------- situations
