@@ -103,6 +103,7 @@ class Rig:
         self.plant = Plant(kit, calibration, self.scheduler, trace=self.trace)
         self.world = World(self.plant, target=target)
         self.cell = Cell(self.plant)
+        self.world.arm = self.cell.arm
         self.reports: list[str] = []
         self.cell.evidence.sensed = self.world.sensed
         self.cell.evidence.report = lambda assumption, text: self.reports.append(assumption)

@@ -74,6 +74,7 @@ class Arm:
         self._granting: Timer | None = None
         self._watching: Timer | None = None
         self._reconcile: Timer | None = None
+        self.slipped: Callable[[], None] = lambda: None
         self._busy_until = 0.0
         self._done_at = 0.0
 
@@ -123,8 +124,10 @@ class Arm:
             self.commands.abandoned += 1
         self._settle_command()
         self.owner = None
-        if self._memory.held:
+        if self.gripped:
             self._expect_someone()
+        elif self._memory.held:
+            self.feel_empty()
         elif self._scheduler.now >= self._busy_until:
             self._clear_zone()
         self._arrange()
@@ -162,9 +165,19 @@ class Arm:
         return ""
 
     @property
+    def gripped(self) -> bool:
+        """The gripper's own sensor: is it closed on something?"""
+        return self._plant.gripper is not None
+
+    def feel_empty(self) -> None:
+        """Something was thought to be held, and the gripper is empty: forget it, and say so."""
+        self._memory.let_go()
+        self.slipped()
+
+    @property
     def ahead(self) -> int:
         """How many have the arm or wait for it."""
-        return len(self.queue) + (self.owner is not None or bool(self._memory.held))
+        return len(self.queue) + (self.owner is not None or self.gripped)
 
     @property
     def reconciling(self) -> bool:
@@ -230,13 +243,13 @@ class Arm:
     # ---------------------------------------------------------------------------------- its insides
 
     def _arrange(self) -> None:
-        if self._granting is None and self.owner is None and not self._memory.held and self.queue:
+        if self._granting is None and self.owner is None and not self.gripped and self.queue:
             delay = max(self._calibration.arbitration_s, self._busy_until - self._scheduler.now)
             self._granting = self._scheduler.call_after(delay, self._grant)
 
     def _grant(self) -> None:
         self._granting = None
-        if self.owner is not None or self._memory.held:
+        if self.owner is not None or self.gripped:
             return
         kept_back = False
         for turn in sorted(self.queue, key=lambda turn: (turn.rank, turn.number)):
@@ -284,19 +297,15 @@ class Arm:
 
     def _put(self) -> None:
         """Put away what nobody took up: a tray on which work was done stands again where it stood."""
-        self.stand()
+        self._settle_command()
         self._reconcile = None
-        memory, handle = self._memory, self._memory.held
-        memory.held = ""
-        tray = memory.trays.get(handle)
+        memory = self._memory
+        tray = memory.trays.get(memory.held)
         if tray is not None and tray.place >= 0 and self._plant.set_down_tray(tray.pose):
-            tray.state = "area"
+            tray.state, memory.held = "area", ""
         else:
             self._plant.put_back()
-            if tray is not None:
-                memory.tray_left(tray)
-            elif handle in memory.parts:
-                memory.forget(memory.parts[handle])
+            memory.let_go()
         self.owner = None
         self._arrange()
         self.released.fire()

@@ -8,6 +8,7 @@ or signals.
 from __future__ import annotations
 
 from collections.abc import Generator
+from functools import partial
 from typing import Any, TypeAlias, TypeVar
 
 from planner_reactor.runtime.scheduler import Scheduler
@@ -44,6 +45,7 @@ class Cell:
         self.wait_s = self.calibration.wait_s(len(self.kit.kinds))
         self.reach_s = self.calibration.look_s + self.calibration.reach_s + self.calibration.close_s
         self._turn_s = self.calibration.pick_and_place_s + self.calibration.test_s
+        self.arm.slipped = partial(self.evidence.note, "gripper")
         self.sensors.noticed = self._noticed
         plant.downstream.answer = self._answered
         plant.downstream.told = self._ready_line

@@ -49,9 +49,11 @@ def read_faults(path: Path, world: Strikable) -> tuple[Fault, ...]:
     return _rows(read_toml(path), world)
 
 
-def faults_from(text: str, world: Strikable, *, file: str = "<faults>") -> tuple[Fault, ...]:
-    """As `read_faults`, from text."""
-    return _rows(parse_toml(text, file=file), world)
+def faults_from(
+    text: str, world: Strikable, *, file: str = "<faults>", beside: tuple[str, ...] = ()
+) -> tuple[Fault, ...]:
+    """As `read_faults`, from text, which may hold other tables `beside`."""
+    return _rows(parse_toml(text, file=file), world, beside)
 
 
 class FaultSchedule:
@@ -84,9 +86,9 @@ class FaultSchedule:
         return True
 
 
-def _rows(source: TomlText, world: Strikable) -> tuple[Fault, ...]:
+def _rows(source: TomlText, world: Strikable, beside: tuple[str, ...] = ()) -> tuple[Fault, ...]:
     for key in source.values:
-        if key != "fault":
+        if key != "fault" and key not in beside:
             raise source.error(f"unknown key '{key}'", key=key, hint="expected [[fault]] tables")
     rows = source.values.get("fault", [])
     if not isinstance(rows, list) or not all(isinstance(row, dict) for row in rows):

@@ -46,10 +46,14 @@ def host(
     made = Host("kitting")
     made.world = world
     cell = Cell(plant)
+    world.arm = cell.arm
     cell.evidence.sensed = world.sensed
     cell.evidence.report = lambda assumption, text: made.report(assumption, False, text)
     for name, routine, results, high in processes(cell):
-        made.process(results=results, window=(0.0, high), name=name)(_paced(routine, scheduler))
+        outcomes = ("abort",) if name == "Track" else ("stop", "abort")
+        made.process(results=results, window=(0.0, high), outcomes=outcomes, name=name)(
+            _paced(routine, scheduler)
+        )
     monitors = Monitors(cell)
     for assumption in ASSUMPTIONS:
         made.assumption(assumption)(partial(monitors.holds, assumption))

@@ -32,6 +32,16 @@ TRAY_ACCOUNTS: Mapping[TrayPlace, str] = {
     "rejected": "rejected",
 }
 
+COUNTED = (
+    "parts on the belt",
+    "parts held",
+    "parts in trays",
+    "trays stacked",
+    "trays held",
+    "trays in the area",
+)
+"""What can be counted, in the order of `Books.differences`."""
+
 
 @dataclass(frozen=True, slots=True)
 class Finding:
@@ -92,26 +102,34 @@ class Books:
         if self.trace is not None:
             self.trace.record("tray_moved_to", tray=tray.number, source=source, target=place, why=why)
 
-    def differences(self, belt: int, held: int, in_trays: int, trays: Mapping[str, int]) -> tuple[str, ...]:
-        """What the books say otherwise than a count of the containers, and sums that do not come out."""
-        parts = self.parts
+    def differences(self, counted: tuple[int, int, int, int, int, int]) -> tuple[str, ...]:
+        """What the books say otherwise than a count of the containers, and sums that do not come out.
+
+        `counted`: parts on the belt, held, in trays; trays on the stack, held, in the tray area.
+        """
+        parts, trays = self.parts, self.trays
+        booked = (
+            parts["on_belt"],
+            parts["held"],
+            parts["in_trays"],
+            trays["stack"],
+            trays["held"],
+            trays["area"],
+        )
         if (
-            parts["on_belt"] == belt
-            and parts["held"] == held
-            and parts["in_trays"] == in_trays
+            booked == counted
             and sum(parts.values()) == self.parts_arrived
-            and sum(self.trays.values()) == self.trays_arrived
-            and all(self.trays[account] == count for account, count in trays.items())
+            and sum(trays.values()) == self.trays_arrived
         ):
             return ()
-        counted = {"on_belt": belt, "held": held, "in_trays": in_trays}
-        wrong = [f"{a}: books {parts[a]}, counted {n}" for a, n in counted.items() if parts[a] != n]
-        wrong += [
-            f"trays {a}: books {self.trays[a]}, counted {n}" for a, n in trays.items() if self.trays[a] != n
+        wrong = [
+            f"{name}: books {books}, counted {count}"
+            for name, books, count in zip(COUNTED, booked, counted, strict=True)
+            if books != count
         ]
         for what, arrived, accounts in (
             ("parts", self.parts_arrived, parts),
-            ("trays", self.trays_arrived, self.trays),
+            ("trays", self.trays_arrived, trays),
         ):
             if sum(accounts.values()) != arrived:
                 wrong.append(f"{what}: arrived {arrived}, accounted for {sum(accounts.values())}")

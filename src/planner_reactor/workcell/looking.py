@@ -73,8 +73,7 @@ class Looking:
             yield cell.arm.go("test", cell.calibration.test_s)
             good = cell.sensors.test()
             if good is None:
-                cell.evidence.note("gripper")
-                self._forget_held()
+                cell.arm.feel_empty()
                 raise Aborted(f"{x} was lost on the way")
             if not good:
                 cell.evidence.against("AQ", f"a {m} failed its test")
@@ -184,9 +183,3 @@ class Looking:
         if handle or kind in tray.noted:
             self._cell.evidence.against("ACT", f"{kind} is missing from {tray.handle}")
         tray.noted.discard(kind)
-
-    def _forget_held(self) -> None:
-        memory = self._cell.memory
-        if memory.held in memory.parts:
-            memory.forget(memory.parts[memory.held])
-        memory.held = ""

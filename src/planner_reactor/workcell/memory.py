@@ -161,6 +161,15 @@ class Memory:
         self.trays[tray.handle] = tray
         return tray
 
+    def tray_taken(self, tray: TrayRecord, tag: str) -> None:
+        """It is in the gripper, and the palm camera reads its tag: what was remembered under another handle
+        is void.
+        """
+        for other in [other for other in self.trays.values() if other.tag == tag and other is not tray]:
+            del self.trays[other.handle]
+        tray.tag, tray.state = tag, "held"
+        self.held = tray.handle
+
     def tray_left(self, tray: TrayRecord) -> None:
         """It left the cell, with all that was in it."""
         tray.state = "left"
@@ -169,6 +178,14 @@ class Memory:
             self.parts.pop(handle, None)
         if self.held == tray.handle:
             self.held = ""
+
+    def let_go(self) -> None:
+        """The gripper is empty: a part that was held is nowhere known, a tray is on the stack again."""
+        handle, self.held = self.held, ""
+        if handle in self.parts:
+            self.forget(self.parts[handle])
+        elif handle in self.trays:
+            self.trays[handle].state = "stack"
 
     def was_given(self, handle: str) -> bool:
         """Was this handle ever given?"""

@@ -124,15 +124,12 @@ class Picking:
             cell.arm.leave(turn)
 
     def put_down(self) -> None:
-        """The gripper has put back what it held; it will be seen again as something new."""
+        """The gripper puts back what it holds: a part will be seen again as something new, a tray is on the
+        stack.
+        """
         cell = self._cell
         cell.arm.put_back()
-        handle = cell.memory.held
-        cell.memory.held = ""
-        if handle in cell.memory.parts:
-            cell.memory.forget(cell.memory.parts[handle])
-        elif handle in cell.memory.trays:
-            cell.memory.tray_left(cell.memory.trays[handle])
+        cell.memory.let_go()
 
     # -------------------------------------------------------------------------------- parts, inside
 
@@ -202,8 +199,8 @@ class Picking:
         cell = self._cell
         view = cell.sensors.palm()
         if not isinstance(view, PartView):
-            cell.evidence.note("gripper")
             cell.memory.forget(record)
+            cell.arm.feel_empty()
             raise Aborted(f"{record.handle} slipped out of the gripper")
         cell.memory.grip(record, view.kind, view.variant)
         if view.variant == cell.kit.by_kind[view.kind].wanted:
@@ -264,9 +261,8 @@ class Picking:
     def _remember_tray(self, tray: TrayRecord, view: TrayView) -> None:
         """The palm camera reads the tag, and sees whether the tray is empty."""
         cell = self._cell
-        tray.tag, tray.state = view.tag, "held"
+        cell.memory.tray_taken(tray, view.tag)
         tray.seen_vacant = set(cell.kit.kinds) - set(view.filled)
-        cell.memory.held = tray.handle
         if view.filled:
             cell.evidence.against("AF", f"a tray came with {len(view.filled)} filled slots")
         else:

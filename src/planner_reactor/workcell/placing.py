@@ -122,12 +122,9 @@ class Placing:
         cell = self._cell
         yield cell.arm.go("discard", cell.calibration.discard_s)
         cell.arm.discard(why)
-        handle = cell.memory.held
-        cell.memory.held = ""
-        if handle in cell.memory.parts:
-            cell.memory.forget(cell.memory.parts[handle])
-        elif handle in cell.memory.trays:
-            cell.memory.tray_left(cell.memory.trays[handle])
+        if cell.memory.held in cell.memory.trays:
+            cell.memory.tray_left(cell.memory.trays[cell.memory.held])
+        cell.memory.let_go()
 
     def over_trays(self) -> Steps[None]:
         """Bring what the arm holds over the tray area."""
@@ -150,7 +147,7 @@ class Placing:
             cell.memory.held = ""
             return
         if felt == "empty":
-            self._lost(handle)
+            cell.arm.feel_empty()
             raise Aborted(f"{handle} was lost on the way")
         self._look_why(tray, part.kind)
         yield from self.discard(f"not seated: {felt}")
@@ -159,11 +156,6 @@ class Placing:
     def _give_back(self) -> Steps[None]:
         yield self._cell.arm.go("put back", self._cell.calibration.put_back_s)
         self._picking.put_down()
-
-    def _lost(self, handle: str) -> None:
-        cell = self._cell
-        cell.evidence.note("gripper")
-        cell.memory.forget(cell.memory.parts[handle])
 
     def _look_why(self, tray: TrayRecord, slot: str) -> None:
         """A part would not go in: does the camera see the tray elsewhere, or the slot filled?"""

@@ -276,17 +276,18 @@ class Plant:
 
     def _compare(self) -> None:
         gripper = self.gripper
-        held = 1 if isinstance(gripper, Part) else 0
-        trays = {
-            "stack": len(self.stack),
-            "area": len(self.area),
-            "held": 1 if isinstance(gripper, Tray) else 0,
-        }
-        in_trays = len(gripper.slots) if isinstance(gripper, Tray) else 0
-        in_trays += sum([len(tray.slots) for tray in self.stack]) + sum(
-            [len(t.slots) for t in self.area.values()]
-        )
-        for message in self.books.differences(self.belt.count, held, in_trays, trays):
+        in_trays = 0
+        for tray in self.stack:
+            in_trays += len(tray.slots)
+        for tray in self.area.values():
+            in_trays += len(tray.slots)
+        held = held_trays = 0
+        if isinstance(gripper, Tray):
+            in_trays, held_trays = in_trays + len(gripper.slots), 1
+        elif gripper is not None:
+            held = 1
+        counted = (self.belt.count, held, in_trays, len(self.stack), held_trays, len(self.area))
+        for message in self.books.differences(counted):
             self.findings.append(Finding("ledger", self.scheduler.now, message))
             if self.trace is not None:
                 self.trace.record("violation", law="ledger", message=message)

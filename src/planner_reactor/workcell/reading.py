@@ -69,14 +69,21 @@ def parse_toml(text: str, *, file: str = "<text>") -> TomlText:
     try:
         return TomlText(file, text, tomllib.loads(text))
     except tomllib.TOMLDecodeError as error:
-        found = re.search(r"^(.*) \(at line (\d+), column (\d+)\)$", str(error))
-        if found is None:
-            raise InputError(f"{file}:{max(1, text.count(chr(10)))}:1: {error}") from error
-        line, column = int(found[2]), int(found[3])
-        shown = text.splitlines()[line - 1] if line <= len(text.splitlines()) else ""
-        raise InputError(
-            f"{file}:{line}:{column}: {found[1]}\n    {shown}\n    {caret(shown, column)}"
-        ) from error
+        raise InputError(_syntax_error(str(error), text, file)) from error
+
+
+def _syntax_error(message: str, text: str, file: str) -> str:
+    lines = text.split("\n")
+    found = re.search(r"^(.*) \(at line (\d+), column (\d+)\)$", message)
+    if found is not None:
+        message, line, column = found[1], int(found[2]), int(found[3])
+    else:
+        while len(lines) > 1 and not lines[-1].strip():
+            lines.pop()
+        line, column = len(lines), len(lines[-1]) + 1
+        message = message.replace("(at end of document)", "at the end of the file")
+    shown = lines[line - 1] if line <= len(lines) else ""
+    return f"{file}:{line}:{column}: {message}\n    {shown}\n    {caret(shown, column)}"
 
 
 @dataclass(slots=True)

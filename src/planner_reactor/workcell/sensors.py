@@ -120,10 +120,6 @@ class Sensors:
         gauss, noise = self._random.gauss, self._plant.calibration.pose_noise
         return part.u + gauss(0.0, noise), part.y + gauss(0.0, noise)
 
-    def gripped(self) -> bool:
-        """Is the gripper closed on something?"""
-        return self._plant.gripper is not None
-
     def palm(self) -> PartView | TrayView | None:
         """What the palm camera sees in the gripper."""
         thing = self._plant.gripper

@@ -13,6 +13,7 @@ from typing import Any
 
 from planner_reactor.errors import InputError, nearest
 from planner_reactor.runtime.scheduler import Scheduler
+from planner_reactor.workcell.arm import Arm
 from planner_reactor.workcell.disturbances import DISTURBANCES
 from planner_reactor.workcell.ledger import Finding
 from planner_reactor.workcell.plant import Plant
@@ -38,6 +39,7 @@ class World:
     def __init__(self, plant: Plant, *, target: int = 0) -> None:
         self.plant = plant
         self.target = target
+        self.arm: Arm | None = None
         self.struck: list[FaultRecord] = []
         self._unsensed: list[FaultRecord] = []
 
@@ -68,8 +70,30 @@ class World:
         """The trays account: `arrived` = the sum of the others."""
         return {"arrived": self.plant.books.trays_arrived, **self.plant.books.trays}
 
+    def commands(self) -> Mapping[str, int]:
+        """The arm's commands: `sent` = the sum of the others."""
+        arm = self.arm
+        if arm is None:
+            return {"sent": 0, "done": 0, "abandoned": 0, "live": 0}
+        made = arm.commands
+        return {
+            "sent": made.sent,
+            "done": made.done,
+            "abandoned": made.abandoned,
+            "live": int(bool(arm.live)),
+        }
+
     def balanced(self) -> bool:
-        """Has every comparison of books and containers come out, so far and now?"""
+        """Have all books come out, so far and now: parts, trays, commands; and is what is held somebody's?"""
+        arm = self.arm
+        if arm is not None:
+            books = self.commands()
+            if books["sent"] != books["done"] + books["abandoned"] + books["live"]:
+                self._find(
+                    "commands", f"sent {books['sent']}, accounted for {sum(books.values()) - books['sent']}"
+                )
+            if arm.gripped and arm.owner is None and not arm.reconciling:
+                self._find("held", "the arm holds something, and nobody will see to it")
         return self.plant.balanced()
 
     def finished(self) -> bool:
@@ -131,6 +155,7 @@ class World:
             "kits": {"completed": downstream.completed, "rejected": len(downstream.rejections)},
             "parts": dict(self.ledger()),
             "trays": dict(self.trays()),
+            "commands": dict(self.commands()),
             "faults": [
                 {
                     "kind": r.kind, "breaks": r.breaks, "struck_s": r.struck_s, "sensed_s": r.sensed_s,
@@ -148,6 +173,9 @@ class World:
             ],
             "findings": [f"{f.time:.3f} s: {f.law}: {f.message}" for f in self.findings],
         }  # fmt: skip
+
+    def _find(self, law: str, message: str) -> None:
+        self.plant.findings.append(Finding(law, self.plant.scheduler.now, message))
 
     def _wrong_value(
         self, kind: str, key: str, value: Any, parameters: Mapping[str, Any]

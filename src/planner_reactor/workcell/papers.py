@@ -1,0 +1,47 @@
+"""The papers' own run as data: what struck when, and the 1994 planner's durations (`papers_1994.toml`; R
+§9.2).
+
+The durations are those that the text and the figures give; where they contradict each other (`first ideal
+reactor`: 40 s, 42 s or 46 s) the first is taken. Nothing here knows how a planner is charged for its time.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from importlib.resources import files
+
+from planner_reactor.workcell.faults import Fault, Strikable, faults_from
+from planner_reactor.workcell.reading import parse_toml
+
+FILE = "papers_1994.toml"
+
+
+@dataclass(frozen=True, slots=True)
+class PlannerDurations:
+    """Seconds that the planner of 1994 took; `normal` by assumption, for all adaptations of its relaxation.
+    """
+
+    first_adaptation_s: float
+    refinement_s: float
+    forced_first_s: float
+    forced_s: float
+    other_s: float
+    until_s: float
+    normal: Mapping[str, float]
+
+
+def planner_durations() -> PlannerDurations:
+    """How long the papers' planner took for each kind of work."""
+    table = dict(parse_toml(_text(), file=FILE).values["planner"])
+    normal = {name: float(seconds) for name, seconds in table.pop("relaxation_s").items()}
+    return PlannerDurations(**table, normal=normal)
+
+
+def papers_faults(world: Strikable) -> tuple[Fault, ...]:
+    """What struck in the papers' run."""
+    return faults_from(_text(), world, file=FILE, beside=("planner",))
+
+
+def _text() -> str:
+    return (files("planner_reactor.workcell") / FILE).read_text(encoding="utf-8")
