@@ -1,4 +1,4 @@
-"""The order in which things happen: what is silent, then verdicts, then steps, then time; and how things end."""
+"""The order in which things happen: what is silent, then verdicts, then steps, then time."""
 
 from planner_reactor.rs.parser import parse_process, parse_program
 from planner_reactor.runtime import Executer, Label, Root, Scheduler, VirtualClock

@@ -9,7 +9,7 @@ event in the trace, never more.
 from __future__ import annotations
 
 from collections.abc import Callable
-from inspect import isawaitable, isgenerator
+from types import CoroutineType, GeneratorType
 from typing import Any
 
 from planner_reactor.rs.expressions import is_number
@@ -38,6 +38,7 @@ class Basic:
         "_kernel",
         "_limit",
         "_low",
+        "_plain",
         "_routine",
         "name",
         "running",
@@ -57,20 +58,25 @@ class Basic:
         self._abandon = process.abandon
         self._limit = process.limit
         self._low = process.signature.window[0] if process.signature.window else 0.0
-        self._checks = tuple(_CHECKS.get(kind) for kind in process.signature.inputs)
+        self._checks = tuple((i, _CHECKS[k]) for i, k in enumerate(process.signature.inputs) if k in _CHECKS)
+        self._plain = (
+            STOPPED if not process.signature.results and "stop" in process.signature.outcomes else None
+        )
 
     def start(self, strand: Strand, arguments: tuple[Value, ...]) -> Outcome | None:
-        for value, check in zip(arguments, self._checks, strict=False):
-            if check is not None and not check(value):
-                self._kernel.note("mistake", name=self.name, place=str(strand.site), argument=repr(value))
+        for position, check in self._checks:
+            if position < len(arguments) and not check(arguments[position]):
+                self._kernel.note(
+                    "mistake", name=self.name, place=str(strand.site), arguments=repr(arguments)
+                )
                 return Outcome(False, cause="error")
         try:
             begun = self._routine(*arguments)
         except Exception as problem:
             return self._settled(self.raised(problem), strand, arguments)
-        if not (isgenerator(begun) or isawaitable(begun)):
+        if not isinstance(begun, _ROUTINES):
             return self._settled(self.returned(begun), strand, arguments)
-        run = Run(self, strand, arguments, begun.__await__() if isawaitable(begun) else begun)
+        run = Run(self, strand, arguments, begun)
         outcome = run.go(None)
         if outcome is None:
             return None
@@ -94,10 +100,9 @@ class Basic:
     # -- for its runs
 
     def returned(self, value: object) -> Outcome:
-        if value is None:
-            values: tuple[Value, ...] = ()
-        else:
-            values = value if isinstance(value, tuple) else (value,)
+        if value is None and self._plain is not None:
+            return self._plain
+        values: tuple[Value, ...] = value if isinstance(value, tuple) else () if value is None else (value,)
         if len(values) != len(self.signature.results):
             self._kernel.note("error", name=self.name, message=f"returned {len(values)} values, "
                               f"{len(self.signature.results)} are declared")  # fmt: skip
@@ -105,7 +110,7 @@ class Basic:
         if "stop" not in self.signature.outcomes:
             self._kernel.note("error", name=self.name, message="stopped, which is not declared")
             return Outcome(False, cause="error")
-        return Outcome(True, values) if values else STOPPED
+        return Outcome(True, values)
 
     def raised(self, problem: Exception) -> Outcome:
         if isinstance(problem, Aborted):
@@ -118,8 +123,8 @@ class Basic:
 class Run:
     """One run of a basic process that did not end at its start."""
 
-    __slots__ = ("_arguments", "_basic", "_begun", "_deadline", "_routine", "_signal", "_strand", "_timed", "_timer",
-                 "over")  # fmt: skip
+    __slots__ = ("_arguments", "_basic", "_begun", "_deadline", "_routine", "_signal", "_strand", "_timed",
+                 "_timer", "over")  # fmt: skip
 
     def __init__(self, basic: Basic, strand: Strand, arguments: tuple[Value, ...], routine: Any) -> None:
         self._basic = basic
@@ -249,6 +254,7 @@ class Run:
         self._timer = self._deadline = None
 
 
+_ROUTINES = (GeneratorType, CoroutineType)
 _CHECKS: dict[str, Callable[[Value], bool]] = {
     "number": is_number,
     "symbol": lambda value: isinstance(value, str),

@@ -22,7 +22,7 @@ class Budgets:
     runs before it goes to the end of the queue (1: a step each, first in first out).
     """
 
-    rounds: int = 100_000
+    turns: int = 100_000
     quantum: float = QUANTUM
     processes: int = 1_000_000
     depth: int = 100_000

@@ -6,29 +6,44 @@ from collections.abc import Callable, Mapping
 from types import MappingProxyType
 
 from planner_reactor.rs.leaves import TESTS
-from planner_reactor.rs.terms import Value
+from planner_reactor.rs.terms import Number, Variable
 from planner_reactor.runtime.leaves import Never, Pass, Ran, Setting, Test, at_most, milliseconds
 from planner_reactor.runtime.ports import In, Out, Ports
-from planner_reactor.runtime.strands import Instruction
+from planner_reactor.runtime.strands import Frame, Instruction
 
 
-def _greater(a: Value, b: Value) -> bool:
-    if a.__class__ is int and b.__class__ is int:
-        return a > b
-    return TESTS["GTR"](a, b)
+def _test(setting: Setting) -> Test:
+    """The test itself is that of `rs.leaves`; two integers, one of them constant, are compared at once."""
+    rule, arguments = TESTS[setting.name], setting.arguments
 
+    def holds(frame: Frame) -> bool:
+        return rule(*arguments(frame))
 
-def _less(a: Value, b: Value) -> bool:
-    if a.__class__ is int and b.__class__ is int:
-        return a < b
-    return TESTS["LST"](a, b)
+    slots = setting.slots
+    match setting.name, setting.terms:
+        case ("GTR", (Variable(name), Number(int(bound)))) if (slot := slots(name)) >= 0:
+
+            def above(frame: Frame) -> bool:
+                value = frame[slot]
+                return value > bound if value.__class__ is int else holds(frame)
+
+            return Test(setting, above)
+        case ("LST", (Variable(name), Number(int(bound)))) if (slot := slots(name)) >= 0:
+
+            def below(frame: Frame) -> bool:
+                value = frame[slot]
+                return value < bound if value.__class__ is int else holds(frame)
+
+            return Test(setting, below)
+        case _:
+            return Test(setting, holds)
 
 
 LEAVES: Mapping[str, Callable[[Setting, Ports], Instruction]] = MappingProxyType(
     {
-        "GTR": lambda setting, ports: Test(setting, _greater),
-        "LST": lambda setting, ports: Test(setting, _less),
-        "Equal": lambda setting, ports: Test(setting, TESTS["Equal"]),
+        "GTR": lambda setting, ports: _test(setting),
+        "LST": lambda setting, ports: _test(setting),
+        "Equal": lambda setting, ports: _test(setting),
         "Ran": lambda setting, ports: Ran(setting),
         "Delay": lambda setting, ports: Pass(setting),
         "SUSPEND": lambda setting, ports: Pass(setting, milliseconds),

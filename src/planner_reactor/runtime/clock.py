@@ -15,16 +15,16 @@ from typing import Protocol
 
 
 class Clock(Protocol):
-    """What a scheduler needs of time."""
+    """What a scheduler needs of time. `jumps`: any instant is reached at once."""
+
+    @property
+    def jumps(self) -> bool: ...
 
     def read(self) -> float:
-        """The present instant, seconds."""
+        """The present instant, seconds; what jumps has none of its own: 0."""
 
-    def reach(self, when: float) -> float:
-        """Wait for the instant `when` (`inf`: for ever), or until interrupted; returns the present instant.
-
-        A clock that cannot wait for ever returns `inf` when asked to: then nothing more will happen.
-        """
+    def reach(self, when: float) -> None:
+        """Wait for the instant `when` (`inf`: for ever), or until interrupted."""
 
     def interrupt(self) -> None:
         """End the present wait, or the next one at once. May be called from any thread."""
@@ -33,18 +33,14 @@ class Clock(Protocol):
 class VirtualClock:
     """Time that passes only when nothing is left to do at the present instant."""
 
-    __slots__ = ("_now",)
-
-    def __init__(self) -> None:
-        self._now = 0.0
+    __slots__ = ()
+    jumps = True
 
     def read(self) -> float:
-        return self._now
+        return 0.0
 
-    def reach(self, when: float) -> float:
-        if when < inf:
-            self._now = when
-        return when
+    def reach(self, when: float) -> None:
+        """There is nothing to wait for."""
 
     def interrupt(self) -> None:
         """Nothing waits on this clock."""
@@ -54,6 +50,7 @@ class WallClock:
     """The machine's monotonic clock."""
 
     __slots__ = ("_origin", "_woken")
+    jumps = False
 
     def __init__(self) -> None:
         self._origin = time.monotonic()
@@ -62,13 +59,9 @@ class WallClock:
     def read(self) -> float:
         return time.monotonic() - self._origin
 
-    def reach(self, when: float) -> float:
-        now = self.read()
-        if now >= when:
-            return now
-        self._woken.wait(None if when == inf else when - now)
-        self._woken.clear()
-        return self.read()
+    def reach(self, when: float) -> None:
+        if self._woken.wait(None if when == inf else max(0.0, when - self.read())):
+            self._woken.clear()
 
     def interrupt(self) -> None:
         self._woken.set()

@@ -11,7 +11,7 @@ slots of their loop.
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from planner_reactor.rs.terms import (
@@ -39,8 +39,8 @@ from planner_reactor.runtime.leaves import Mistake, Setting, Use
 from planner_reactor.runtime.outcomes import Control, Guards
 from planner_reactor.runtime.ports import Ports
 from planner_reactor.runtime.regions import Region, exported
-from planner_reactor.runtime.strands import OUTSIDE, SENSING, SERVING, Frame, Instruction
-from planner_reactor.runtime.values import Functions, tuples
+from planner_reactor.runtime.strands import OUTSIDE, SENSING, SERVING, Frame, Instruction, Where
+from planner_reactor.runtime.values import Functions, frames, reader, tuples
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,7 +79,7 @@ class Compiler:
         results = tuple(region.slot(name) for name in schema.results) if exporting else ()
         exits = Exits(instructions.Return(results, ok=True), instructions.Return(results, ok=False))
         body = _Body(self, _title(schema), tail=None if exporting else exits)
-        entry = body.process(schema.body, region, exits, OUTSIDE)
+        entry = body.process(schema.body, region, exits, body.outside)
         return Code(entry, blank(region.size - len(schema.head)))
 
     def root(self, name: str, process: Process, bound: Mapping[str, Value]) -> tuple[Instruction, Frame]:
@@ -93,7 +93,8 @@ class Compiler:
             instructions.RootEnd(self.kernel, names, ok=True),
             instructions.RootEnd(self.kernel, names, ok=False),
         )
-        entry = _Body(self, name, tail=None).process(process, region, exits, OUTSIDE)
+        body = _Body(self, name, tail=None)
+        entry = body.process(process, region, exits, body.outside)
         return entry, [*bound.values(), *blank(region.size - len(bound))]
 
 
@@ -103,58 +104,60 @@ class _Body:
     def __init__(self, compiler: Compiler, name: str, *, tail: Exits | None) -> None:
         self.compiler = compiler
         self.kernel = compiler.kernel
-        self.name = name
+        self.outside = Where(name, OUTSIDE)
+        self.sensing = Where(name, SENSING)
+        self.serving = Where(name, SERVING)
         self.tail = tail
         self.calls = 0
 
-    def process(self, term: Process, region: Region, exits: Exits, zone: int) -> Instruction:
+    def process(self, term: Process, region: Region, exits: Exits, where: Where) -> Instruction:
         match term:
             case Call():
-                return self.call(term, region, exits, zone)
+                return self.call(term, region, exits, where)
             case Seq(parts):
-                return self.chain(parts, region, exits, zone, on_abort=True)
+                return self.chain(parts, region, exits, where, on_abort=True)
             case Cond(parts):
-                return self.chain(parts, region, exits, zone, on_abort=False)
+                return self.chain(parts, region, exits, where, on_abort=False)
             case Not(body):
-                return self.process(body, region, Exits(instructions.Fail(exits.ab), exits.ok), zone)
+                return self.process(body, region, Exits(instructions.Fail(exits.ab), exits.ok), where)
             case If(test, then, otherwise):
-                branches = [self.process(p, region, exits, zone) for p in (then, otherwise)]
-                return self.process(test, region, Exits(*branches), zone)
+                branches = [self.process(p, region, exits, where) for p in (then, otherwise)]
+                return self.process(test, region, Exits(*branches), where)
             case Par(parts):
-                return self.fork(parts, region, exits, zone, self.compiler.part, first=False)
+                return self.fork(parts, region, exits, where, self.compiler.part, first=False)
             case All(parts):
-                return self.fork(parts, region, exits, zone, self.compiler.share, first=True)
+                return self.fork(parts, region, exits, where, self.compiler.share, first=True)
             case Disable(parts):
-                return self.rivals(parts, region, exits, zone)
+                return self.rivals(parts, region, exits, where)
             case Loop():
-                return self.loop(term, region, exits, zone)
+                return self.loop(term, region, exits, where)
             case Spawn():
-                return self.spawn(term, region, exits, zone)
+                return self.spawn(term, region, exits, where)
 
     def chain(
-        self, parts: tuple[Process, ...], region: Region, exits: Exits, zone: int, *, on_abort: bool
+        self, parts: tuple[Process, ...], region: Region, exits: Exits, where: Where, *, on_abort: bool
     ) -> Instruction:
-        """`;` (N1: goes on after stop and abort) and `:` (N2: after stop). A SIT opens a body to the
-        chain's end.
+        """`;` (N1: goes on after stop and abort) and `:` (N2: after stop).
+
+        A control that opens a body opens it to the end of the chain.
         """
         last = len(parts) - 1
         opener = next((i for i, p in enumerate(parts[:last]) if self.opens(p)), None)
         if opener is None:
-            entry = self.process(parts[last], region, exits, zone)
+            entry = self.process(parts[last], region, exits, where)
             before = last
         else:
             slot = region.new_slot()
-            inner = self.closing(slot, exits)
-            rest = self.chain(parts[opener + 1 :], region, inner, zone, on_abort=on_abort)
-            entry = self.opening(
-                parts[opener], region, Exits(rest, rest if on_abort else exits.ab), zone, slot, inner
-            )
+            closing = self.closing(slot, exits)
+            rest = self.chain(parts[opener + 1 :], region, closing, where, on_abort=on_abort)
+            onward = Exits(rest, rest if on_abort else exits.ab)
+            entry = self.opening(self.process(parts[opener], region, onward, where), slot, closing)
             before = opener
         for part in reversed(parts[:before]):
-            entry = self.process(part, region, Exits(entry, entry if on_abort else exits.ab), zone)
+            entry = self.process(part, region, Exits(entry, entry if on_abort else exits.ab), where)
         return entry
 
-    # -- bodies that a SIT opens
+    # -- bodies that a control opens
 
     def opens(self, term: Process) -> bool:
         """Is this a direct call of a control that opens a body for what follows it?"""
@@ -167,11 +170,8 @@ class _Body:
             instructions.CloseBody(self.kernel, slot, exits.ab, ok=False),
         )
 
-    def opening(
-        self, term: Process, region: Region, exits: Exits, zone: int, slot: int, closing: Exits | None
-    ) -> Instruction:
-        """The control itself; `closing` is None if the body is for a spawned strand."""
-        leaf = self.process(term, region, exits, zone)
+    def opening(self, leaf: Instruction, slot: int, closing: Exits | None) -> Instruction:
+        """Let the control's leaf open a body; `closing` is None if that is the body of a spawned strand."""
         if isinstance(leaf, Use):
             leaf.slot = slot
             leaf.close = None if closing is None else closing.ab
@@ -181,20 +181,27 @@ class _Body:
     # -- forks
 
     def fork(
-        self, parts: tuple[Process, ...], region: Region, exits: Exits, zone: int, ends: Exits, *, first: bool
+        self,
+        parts: tuple[Process, ...],
+        region: Region,
+        exits: Exits,
+        where: Where,
+        ends: Exits,
+        *,
+        first: bool,
     ) -> Instruction:
-        entries = tuple(self.process(p, region, ends, zone) for p in parts)
+        entries = tuple(self.process(p, region, ends, where) for p in parts)
         return forks.ForkParts(
-            self.kernel, entries, ok=exits.ok, ab=exits.ab, first=first, decisive=False, zone=zone
+            self.kernel, entries, ok=exits.ok, ab=exits.ab, first=first, decisive=False, where=where
         )
 
-    def rivals(self, parts: tuple[Process, ...], region: Region, exits: Exits, zone: int) -> Instruction:
+    def rivals(self, parts: tuple[Process, ...], region: Region, exits: Exits, where: Where) -> Instruction:
         """`#`: each part binds in a region of its own, of which the winner's bindings leave."""
         entries, leaving = [], []
         for part in parts:
             own = Region(region)
             own.declare(part)
-            entries.append(self.process(part, own, self.compiler.rival, zone))
+            entries.append(self.process(part, own, self.compiler.rival, where))
             leaving.append(tuple((own.slot(n), region.slot(n)) for n in exported(part)))
         return forks.ForkParts(
             self.kernel,
@@ -203,24 +210,24 @@ class _Body:
             ab=exits.ab,
             first=False,
             decisive=True,
-            zone=zone,
+            where=where,
             exports=tuple(leaving) if any(leaving) else (),
             guard=self.guard(parts, region),
         )
 
     def guard(self, parts: tuple[Process, ...], region: Region) -> forks.Guard | None:
         for index, part in enumerate(parts):
-            if isinstance(part, Call) and (control := self.compiler.controls.get(part.name)) is not None:
-                if control.guards and part.arguments:
-                    guards: Guards = control  # type: ignore[assignment]  # it says that it guards
-                    return index, guards, tuples(part.arguments[:1], region.slot, self.compiler.functions)
+            control = self.compiler.controls.get(part.name) if isinstance(part, Call) else None
+            if control is not None and control.guards and isinstance(part, Call) and part.arguments:
+                guards: Guards = control  # type: ignore[assignment]  # it says that it guards
+                return index, guards, tuples(part.arguments[:1], region.slot, self.compiler.functions)
         return None
 
     # -- loops (N8)
 
-    def loop(self, term: Loop, region: Region, exits: Exits, zone: int) -> Instruction:
-        sensing, serving = (SENSING, SERVING) if zone == OUTSIDE else (zone, zone)
-        again = instructions.Round(self.kernel, zone=zone, name=self.name)
+    def loop(self, term: Loop, region: Region, exits: Exits, where: Where) -> Instruction:
+        sensing, serving = (self.sensing, self.serving) if where is self.outside else (where, where)
+        again = instructions.Round(self.kernel, where)
         before = region.size
         hidden = Region(region)
         hidden.declare(term.body)
@@ -229,84 +236,78 @@ class _Body:
             slot = region.new_slot()
             closing = self.closing(slot, ends)
             body = self.process(term.body, hidden, closing, serving)
-            again.head = self.opening(term.condition, region, Exits(body, exits.ab), sensing, slot, closing)
+            leaf = self.process(term.condition, region, Exits(body, exits.ab), sensing)
+            again.head = self.opening(leaf, slot, closing)
         else:
             body = self.process(term.body, hidden, ends, serving)
             again.head = self.process(term.condition, region, Exits(body, exits.ab), sensing)
         again.slots = _fresh(term.condition, region, before)
         return again.head
 
-    def spawn(self, term: Spawn, region: Region, exits: Exits, zone: int) -> Instruction:
-        sensing, serving = (SENSING, SERVING) if zone == OUTSIDE else (zone, zone)
-        fork = forks.ForkSpawn(self.kernel, ok=exits.ok, ab=exits.ab, zone=zone)
+    def spawn(self, term: Spawn, region: Region, exits: Exits, where: Where) -> Instruction:
+        sensing, serving = (self.sensing, self.serving) if where is self.outside else (where, where)
+        fork = forks.ForkSpawn(self.kernel, ok=exits.ok, ab=exits.ab, where=where)
         before = region.size
         hidden = Region(region)
         hidden.declare(term.body)
         opens = self.opens(term.condition)
         slot = region.new_slot() if opens else -1
-        spawn = forks.SpawnBody(self.kernel, zone=zone, name=self.name, slot=slot)
-        condition = Exits(spawn, self.compiler.head)
+        spawn = forks.SpawnBody(self.kernel, slot, where)
+        ends = self.compiler.spawned
+        head = self.process(term.condition, region, Exits(spawn, self.compiler.head), sensing)
         if opens:
-            closing = self.closing(slot, self.compiler.spawned)
-            spawn.close = closing.ab
-            spawn.body = self.process(term.body, hidden, closing, serving)
-            spawn.head = self.opening(term.condition, region, condition, sensing, slot, None)
-            spawn.opener = getattr(spawn.head, "control", None)
-        else:
-            spawn.body = self.process(term.body, hidden, self.compiler.spawned, serving)
-            spawn.head = self.process(term.condition, region, condition, sensing)
+            ends = self.closing(slot, ends)
+            spawn.close = ends.ab
+            spawn.opener = getattr(self.opening(head, slot, None), "control", None)
+        spawn.body = self.process(term.body, hidden, ends, serving)
         spawn.slots = _fresh(term.condition, region, before)
-        fork.head = spawn.head
+        spawn.head = fork.head = head
         return fork
 
     # -- calls
 
-    def call(self, call: Call, region: Region, exits: Exits, zone: int) -> Instruction:
+    def call(self, call: Call, region: Region, exits: Exits, where: Where) -> Instruction:
         if call.name == "STOP":
             return exits.ok
         if call.name == "ABORT":
             return instructions.Fail(exits.ab)
         self.calls += 1
-        site: Hashable = call.place or (self.name, self.calls)
-        failed = Mistake(self.kernel, call.name, exits.ab, zone=zone, site=site)
+        at = Where(where.within, where.zone, call.place or (where.within, self.calls))
+        failed = Mistake(self.kernel, call.name, exits.ab, at)
         control = self.compiler.controls.get(call.name)
-        signature = BUILT_IN[call.name] if call.name in LEAVES else control.signature if control else None
-        if signature is not None and not (
-            signature.takes(len(call.arguments)) and signature.returns(len(call.results))
-        ):
+        if control is None and call.name not in LEAVES:
+            return self.schema_call(call, region, exits, failed)
+        signature = BUILT_IN[call.name] if control is None else control.signature
+        if not (signature.takes(len(call.arguments)) and signature.returns(len(call.results))):
             return failed
-        arguments = tuples(call.arguments, region.slot, self.compiler.functions)
-        targets = tuple(region.slot(name) for name in call.results)
-        if signature is None:
-            return self.schema_call(call, exits, zone, failed, instructions.Arguments(arguments, targets))
         setting = Setting(
-            kernel=self.kernel, name=call.name, arguments=arguments, targets=targets, ok=exits.ok, ab=exits.ab,
-            failed=failed, zone=zone, site=site,
-        )  # fmt: skip
-        if call.name in LEAVES:
-            return LEAVES[call.name](setting, self.compiler.ports)
-        assert control is not None
-        return Use(setting, control)
-
-    def schema_call(
-        self, call: Call, exits: Exits, zone: int, failed: Mistake, passed: instructions.Arguments
-    ) -> Instruction:
-        definition = self.compiler.definitions.named(call.name)
-        is_tail = self.tail is not None and exits.ok is self.tail.ok and exits.ab is self.tail.ab
-        if is_tail and not passed.targets:
-            return instructions.TailCall(
-                self.kernel, definition, passed, failed=failed, zone=zone, name=self.name
-            )
-        return instructions.Call(
-            self.kernel,
-            definition,
-            passed,
+            kernel=self.kernel,
+            name=call.name,
+            where=at,
+            terms=call.arguments,
+            slots=region.slot,
+            arguments=tuples(call.arguments, region.slot, self.compiler.functions),
+            readers=tuple(reader(a, region.slot, self.compiler.functions) for a in call.arguments),
+            targets=tuple(region.slot(name) for name in call.results),
             ok=exits.ok,
             ab=exits.ab,
             failed=failed,
-            zone=zone,
-            name=self.name,
         )
+        if control is None:
+            return LEAVES[call.name](setting, self.compiler.ports)
+        return Use(setting, control)
+
+    def schema_call(self, call: Call, region: Region, exits: Exits, failed: Mistake) -> Instruction:
+        definition = self.compiler.definitions.named(call.name)
+        passed = instructions.Arguments(
+            frames(call.arguments, region.slot, self.compiler.functions),
+            len(call.arguments),
+            tuple(region.slot(name) for name in call.results),
+        )
+        is_tail = self.tail is not None and exits.ok is self.tail.ok and exits.ab is self.tail.ab
+        if is_tail and not passed.targets:
+            return instructions.TailCall(definition, passed, failed)
+        return instructions.Call(self.kernel, definition, passed, failed, ok=exits.ok, ab=exits.ab)
 
 
 def _ends(ok: Instruction, ab: Instruction) -> Exits:

@@ -8,7 +8,7 @@ stays as it was, whatever is loaded or unloaded meanwhile.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
 from planner_reactor.errors import InputError
@@ -32,17 +32,17 @@ class Clause:
     tails).
     """
 
-    __slots__ = ("_compile", "_exporting", "_plain", "schema")
+    __slots__ = ("_compile", "_exporting", "plain_code", "schema")
 
     def __init__(self, schema: Schema, compile_schema: Compile) -> None:
         self.schema = schema
         self._compile = compile_schema
-        self._plain: Code | None = None
+        self.plain_code: Code | None = None
         self._exporting: Code | None = None
 
     def plain(self) -> Code:
-        if (code := self._plain) is None:
-            code = self._plain = self._compile(self.schema, False)
+        if (code := self.plain_code) is None:
+            code = self.plain_code = self._compile(self.schema, False)
         return code
 
     def exporting(self) -> Code:
@@ -54,22 +54,22 @@ class Clause:
 class Definition:
     """All clauses of one name."""
 
-    __slots__ = ("_by_constants", "_only", "_only_arity", "name")
+    __slots__ = ("_by_constants", "name", "only", "only_arity")
 
     def __init__(self, name: str) -> None:
         self.name = name
         self._by_constants: dict[tuple[int, tuple[int, ...]], dict[tuple[Value, ...], Clause]] = {}
-        self._only: Clause | None = None
-        self._only_arity = -1
+        self.only: Clause | None = None
+        self.only_arity = -1
 
     def __bool__(self) -> bool:
         return bool(self._by_constants)
 
-    def select(self, values: tuple[Value, ...]) -> Clause | None:
+    def select(self, values: Sequence[Value]) -> Clause | None:
         """The clause that applies to these values, or None."""
         count = len(values)
-        if count == self._only_arity:
-            return self._only
+        if count == self.only_arity:
+            return self.only
         for (arity, positions), clauses in self._by_constants.items():
             if arity == count and (clause := clauses.get(tuple([values[p] for p in positions]))) is not None:
                 return clause
@@ -96,12 +96,12 @@ class Definition:
 
     def _find_only(self) -> None:
         """If nothing is to be selected by value, selecting is one comparison."""
-        self._only, self._only_arity = None, -1
+        self.only, self.only_arity = None, -1
         if len(self._by_constants) == 1:
             [((arity, positions), clauses)] = self._by_constants.items()
             if not positions:
-                [self._only] = clauses.values()
-                self._only_arity = arity
+                [self.only] = clauses.values()
+                self.only_arity = arity
 
 
 class Definitions:

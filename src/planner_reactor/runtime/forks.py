@@ -11,7 +11,7 @@ from __future__ import annotations
 from planner_reactor.runtime.instructions import enter, label_of
 from planner_reactor.runtime.kernel import Kernel
 from planner_reactor.runtime.outcomes import Guards, OpensBody
-from planner_reactor.runtime.strands import FORKED, UNBOUND, Fork, Instruction, Strand
+from planner_reactor.runtime.strands import FORKED, NOWHERE, UNBOUND, Fork, Instruction, Strand, Where
 from planner_reactor.runtime.values import Tuples
 
 Exports = tuple[tuple[tuple[int, int], ...], ...]
@@ -22,9 +22,9 @@ Guard = tuple[int, Guards, Tuples]
 
 
 class ForkParts:
-    """Begin the parts of a `|`, `&` or `#`. `first` is the outcome of `|` or `&` before any part has ended."""
+    """Begin the parts of a `|`, `&` or `#`. `first`: the outcome of `|` or `&` before any part has ended."""
 
-    __slots__ = ("ab", "decisive", "exports", "first", "guard", "kernel", "ok", "parts", "zone")
+    __slots__ = ("ab", "decisive", "exports", "first", "guard", "kernel", "ok", "parts", "where")
     silent = True
 
     def __init__(
@@ -36,7 +36,7 @@ class ForkParts:
         ab: Instruction,
         first: bool,
         decisive: bool,
-        zone: int,
+        where: Where,
         exports: Exports = (),
         guard: Guard | None = None,
     ) -> None:
@@ -46,7 +46,7 @@ class ForkParts:
         self.ab = ab
         self.first = first
         self.decisive = decisive  # is it a `#`?
-        self.zone = zone
+        self.where = where
         self.exports = exports
         self.guard = guard
 
@@ -96,7 +96,7 @@ class PartEnd:
 
     __slots__ = ("kernel", "ok", "settles")
     silent = True
-    zone = 0
+    where = NOWHERE
 
     def __init__(self, kernel: Kernel, *, ok: bool, settles: bool) -> None:
         self.kernel = kernel
@@ -119,7 +119,6 @@ def end_part(kernel: Kernel, fork: Fork, strand: Strand) -> None:
     """A strand of a fork is over; with the last one the fork is."""
     fork.live -= 1
     kernel.live -= 1
-    kernel.moved(strand)
     strand.release()
     if not fork.live:
         kernel.joined(fork, fork.ok, fork.cause[1] if fork.cause else "failed")
@@ -130,7 +129,7 @@ class RivalEnd:
 
     __slots__ = ("kernel", "ok")
     silent = True
-    zone = 0
+    where = NOWHERE
 
     def __init__(self, kernel: Kernel, *, ok: bool) -> None:
         self.kernel = kernel
@@ -152,15 +151,15 @@ class RivalEnd:
 class ForkSpawn:
     """Begin `A::B`: a head that runs A; each time A stops it spawns a B."""
 
-    __slots__ = ("ab", "exports", "head", "kernel", "ok", "zone")
+    __slots__ = ("ab", "exports", "head", "kernel", "ok", "where")
     silent = True
 
-    def __init__(self, kernel: Kernel, *, ok: Instruction, ab: Instruction, zone: int) -> None:
+    def __init__(self, kernel: Kernel, *, ok: Instruction, ab: Instruction, where: Where) -> None:
         self.kernel = kernel
         self.head: Instruction = self
         self.ok = ok
         self.ab = ab
-        self.zone = zone
+        self.where = where
         self.exports: Exports = ()
 
     def run(self, strand: Strand) -> Instruction | None:
@@ -179,10 +178,10 @@ class ForkSpawn:
 class SpawnBody:
     """A of `A::B` has stopped: a B with these bindings, and A again with fresh ones."""
 
-    __slots__ = ("body", "close", "head", "kernel", "name", "opener", "slot", "slots", "zone")
+    __slots__ = ("body", "close", "head", "kernel", "opener", "slot", "slots", "where")
     silent = True
 
-    def __init__(self, kernel: Kernel, *, zone: int, name: str, slot: int) -> None:
+    def __init__(self, kernel: Kernel, slot: int, where: Where) -> None:
         self.kernel = kernel
         self.slots: tuple[int, ...] = ()
         self.body: Instruction = self
@@ -190,8 +189,7 @@ class SpawnBody:
         self.close: Instruction = self
         self.opener: OpensBody | None = None
         self.slot = slot
-        self.zone = zone
-        self.name = name
+        self.where = where
 
     def run(self, strand: Strand) -> Instruction | None:
         kernel = self.kernel
@@ -201,17 +199,10 @@ class SpawnBody:
         if kernel.live < kernel.budgets.processes:
             self._spawn(strand, fork)
         else:
-            kernel.note("crowded", name=self.name)
+            kernel.note("crowded", root=strand.root.name)
         for slot in self.slots:
             frame[slot] = UNBOUND
         strand.value = None
-        meter, now = strand.meter, kernel.scheduler.now
-        if meter.instant != now:
-            meter.instant = now
-            meter.rounds = 0
-        meter.rounds += 1
-        if meter.rounds > kernel.budgets.rounds:
-            return kernel.overrun(strand, self.name, self.head)
         kernel.queue(strand, self.head)
         return None
 
@@ -232,7 +223,7 @@ class BodyEnd:
 
     __slots__ = ("kernel", "ok")
     silent = True
-    zone = 0
+    where = NOWHERE
 
     def __init__(self, kernel: Kernel, *, ok: bool) -> None:
         self.kernel = kernel
@@ -252,7 +243,7 @@ class HeadEnd:
 
     __slots__ = ("kernel",)
     silent = True
-    zone = 0
+    where = NOWHERE
 
     def __init__(self, kernel: Kernel) -> None:
         self.kernel = kernel

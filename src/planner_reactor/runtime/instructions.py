@@ -15,8 +15,8 @@ from planner_reactor.rs.terms import Value
 from planner_reactor.runtime.definitions import Definition
 from planner_reactor.runtime.kernel import Kernel
 from planner_reactor.runtime.outcomes import OpensBody
-from planner_reactor.runtime.strands import UNBOUND, Body, Frame, Instruction, Strand
-from planner_reactor.runtime.values import Tuples
+from planner_reactor.runtime.strands import NOWHERE, UNBOUND, Body, Instruction, Strand, Where
+from planner_reactor.runtime.values import Frames, Tuples
 
 
 class Fail:
@@ -24,7 +24,7 @@ class Fail:
 
     __slots__ = ("ab",)
     silent = True
-    zone = 0
+    where = NOWHERE
 
     def __init__(self, ab: Instruction) -> None:
         self.ab = ab
@@ -38,14 +38,15 @@ class Fail:
 class Arguments:
     """What goes into a call, and the slots that its results go to."""
 
-    values: Tuples
+    frames: Frames
+    count: int
     targets: tuple[int, ...]
 
 
 class Call:
     """N7. `N_e<y> = [body[e/z]]_{r→y}`: a call that returns here."""
 
-    __slots__ = ("ab", "arguments", "definition", "failed", "kernel", "name", "ok", "targets", "zone")
+    __slots__ = ("ab", "count", "definition", "failed", "frames", "kernel", "ok", "targets", "where")
     silent = True
 
     def __init__(
@@ -53,94 +54,69 @@ class Call:
         kernel: Kernel,
         definition: Definition,
         passed: Arguments,
+        failed: Instruction,
         *,
         ok: Instruction,
         ab: Instruction,
-        failed: Instruction,
-        zone: int,
-        name: str,
     ) -> None:
         self.kernel = kernel
         self.definition = definition
-        self.arguments = passed.values
+        self.frames = passed.frames
+        self.count = passed.count
         self.targets = passed.targets
         self.ok = ok
         self.ab = ab
         self.failed = failed
-        self.zone = zone
-        self.name = name
+        self.where = failed.where
 
     def run(self, strand: Strand) -> Instruction | None:
         try:
-            values = self.arguments(strand.frame)
+            frame = self.frames(strand.frame)
         except EvaluationError:
             return self.failed
-        clause = self.definition.select(values)
+        definition = self.definition
+        clause = definition.only if definition.only_arity == self.count else definition.select(frame)
         if clause is None:
             return self.failed
         stack = strand.stack
         depth = 0 if stack is None else stack[3]
         kernel = self.kernel
         if depth > kernel.budgets.depth:
-            kernel.zeno = self.name
+            kernel.zeno = self.where.within
             strand.cause = "budget"
             return self.ab
-        code = clause.exporting() if self.targets else clause.plain()
+        code = clause.exporting() if self.targets else clause.plain_code or clause.plain()
         strand.stack = (stack, strand.frame, self, depth + 1)
-        strand.frame = [*values, *code.blank]
-        meter = strand.meter
-        now = kernel.scheduler.now
-        if meter.instant != now:
-            meter.instant = now
-            meter.rounds = 0
-        meter.rounds += 1
-        if meter.rounds > kernel.budgets.rounds:
-            return kernel.overrun(strand, self.name, code.entry)
+        frame.extend(code.blank)
+        strand.frame = frame
         return code.entry
 
 
 class TailCall:
     """N6. `[r>T]_{} = [T]_{}`: a call in whose place nothing is left to do."""
 
-    __slots__ = ("arguments", "definition", "failed", "kernel", "name", "zone")
+    __slots__ = ("count", "definition", "failed", "frames", "where")
     silent = True
 
-    def __init__(
-        self,
-        kernel: Kernel,
-        definition: Definition,
-        passed: Arguments,
-        *,
-        failed: Instruction,
-        zone: int,
-        name: str,
-    ) -> None:
-        self.kernel = kernel
+    def __init__(self, definition: Definition, passed: Arguments, failed: Instruction) -> None:
         self.definition = definition
-        self.arguments = passed.values
+        self.frames = passed.frames
+        self.count = passed.count
         self.failed = failed
-        self.zone = zone
-        self.name = name
+        self.where = failed.where
 
     def run(self, strand: Strand) -> Instruction | None:
         try:
-            values = self.arguments(strand.frame)
+            frame = self.frames(strand.frame)
         except EvaluationError:
             return self.failed
-        clause = self.definition.select(values)
+        definition = self.definition
+        clause = definition.only if definition.only_arity == self.count else definition.select(frame)
         if clause is None:
             return self.failed
-        code = clause.plain()
-        strand.frame = [*values, *code.blank]
-        kernel = self.kernel
-        meter = strand.meter
-        now = kernel.scheduler.now
-        if meter.instant != now:
-            meter.instant = now
-            meter.rounds = 0
-        meter.rounds += 1
-        if meter.rounds > kernel.budgets.rounds:
-            return kernel.overrun(strand, self.name, code.entry)
+        code = clause.plain_code or clause.plain()
+        frame.extend(code.blank)
+        strand.frame = frame
         return code.entry
 
 
@@ -149,7 +125,7 @@ class Return:
 
     __slots__ = ("ok", "results")
     silent = True
-    zone = 0
+    where = NOWHERE
 
     def __init__(self, results: tuple[int, ...], *, ok: bool) -> None:
         self.ok = ok
@@ -174,7 +150,7 @@ class RootEnd:
 
     __slots__ = ("kernel", "ok", "results")
     silent = True
-    zone = 0
+    where = NOWHERE
 
     def __init__(self, kernel: Kernel, results: tuple[tuple[str, int], ...], *, ok: bool) -> None:
         self.kernel = kernel
@@ -192,30 +168,20 @@ class RootEnd:
 class Round:
     """N8. `A:;B = A : ([B]_{} ; (A:;B))`: B has ended, however; A again, with fresh results."""
 
-    __slots__ = ("head", "kernel", "name", "slots", "zone")
+    __slots__ = ("head", "kernel", "slots", "where")
     silent = True
 
-    def __init__(self, kernel: Kernel, *, zone: int, name: str) -> None:
+    def __init__(self, kernel: Kernel, where: Where) -> None:
         self.kernel = kernel
         self.slots: tuple[int, ...] = ()
         self.head: Instruction = self
-        self.zone = zone
-        self.name = name
+        self.where = where
 
     def run(self, strand: Strand) -> Instruction | None:
-        frame: Frame = strand.frame
-        for slot in self.slots:
-            frame[slot] = UNBOUND
-        kernel = self.kernel
-        kernel.moved(strand)
-        meter = strand.meter
-        now = kernel.scheduler.now
-        if meter.instant != now:
-            meter.instant = now
-            meter.rounds = 0
-        meter.rounds += 1
-        if meter.rounds > kernel.budgets.rounds:
-            return kernel.overrun(strand, self.name, self.head)
+        if self.slots:
+            frame = strand.frame
+            for slot in self.slots:
+                frame[slot] = UNBOUND
         return self.head
 
 
@@ -224,7 +190,7 @@ class CloseBody:
 
     __slots__ = ("kernel", "ok", "onward", "slot")
     silent = True
-    zone = 0
+    where = NOWHERE
 
     def __init__(self, kernel: Kernel, slot: int, onward: Instruction, *, ok: bool) -> None:
         self.kernel = kernel
@@ -240,7 +206,6 @@ class CloseBody:
         leave(strand, body)
         kernel = self.kernel
         kernel.close(body, "stop" if self.ok else "abort")
-        kernel.moved(strand)
         if kernel.silent:
             kernel.queue(strand, self.onward)
             return None

@@ -13,16 +13,17 @@ before it.
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Hashable
+from collections.abc import Callable
 from heapq import heappop, heappush
 from typing import Any
 
 from planner_reactor.rs.terms import Value
 from planner_reactor.runtime.budgets import Budgets
 from planner_reactor.runtime.outcomes import Observer
-from planner_reactor.runtime.scheduler import Scheduler
+from planner_reactor.runtime.scheduler import Entry, Scheduler
 from planner_reactor.runtime.strands import (
     FORKED,
+    NOWHERE,
     OVER,
     READY,
     RUNNING,
@@ -43,10 +44,6 @@ class Kernel:
     does.
     """
 
-    __slots__ = ("_armed", "_draining", "_later", "_moved", "_ranked", "_slice", "_undecided", "_watched", "bodies",
-                 "budgets", "live", "note", "observer", "on_end", "ready", "rendezvous", "scheduler", "silent", "steps",
-                 "zeno")  # fmt: skip
-
     def __init__(self, scheduler: Scheduler, budgets: Budgets, observer: Observer | None) -> None:
         self.scheduler = scheduler
         self.budgets = budgets
@@ -59,11 +56,13 @@ class Kernel:
         self.bodies = 0
         self.steps = 0
         self.rendezvous = 0
+        self.turns = budgets.turns
         self.zeno: str | None = None
         self._slice = range(budgets.slice)
+        self._patience = range(budgets.turns)
         self._undecided: list[Fork] = []
         self._ranked: list[tuple[int, tuple[int, ...], Fork]] = []
-        self._watched: dict[Value, Callable[[], object]] = {}
+        self.watched: dict[Value, Callable[[], object]] = {}
         self._moved: dict[Value, None] = {}
         self._later: deque[Callable[[], object]] = deque()
         self._draining = False
@@ -71,39 +70,48 @@ class Kernel:
 
     # -- the loop
 
-    def run(self, strand: Strand, pc: Instruction) -> None:
+    def turn(self, strand: Strand, pc: Instruction) -> None:
         """Let a strand run for a slice, or until it waits, forks, ends, or something else comes first."""
-        following: Instruction | None
+        strand.state = RUNNING
+        meter, now = strand.meter, self.scheduler.now
+        if meter.instant != now:
+            meter.instant = now
+            meter.turns = 0
+        meter.turns += 1
+        if meter.turns > self.turns:
+            self.overrun(strand, pc)
+            return
+        following: Instruction | None = pc
         for _ in self._slice:
-            following = pc.run(strand)
+            following = following.run(strand)  # type: ignore[union-attr]  # never None here
             if following is None:
                 return
-            pc = following
-        while pc.silent:
-            following = pc.run(strand)
-            if following is None:
+        meter.turns += self.budgets.slice - 1
+        self.advance(strand, following)
+
+    def advance(self, strand: Strand, pc: Instruction | None) -> None:
+        """Take a strand to its next leaf, where it will have a turn."""
+        for _ in self._patience:
+            if pc is None:
                 return
-            pc = following
-        strand.pc = pc
-        strand.state = READY
-        self.ready.append(strand)
+            if not pc.silent:
+                strand.pc = pc
+                strand.state = READY
+                self.ready.append(strand)
+                return
+            pc = pc.run(strand)
+        if pc is not None:
+            self.overrun(strand, pc)
 
     def settle(self) -> None:
         """Everything that belongs to the present step."""
-        silent, ready = self.silent, self.ready
+        silent = self.silent
         while True:
             while silent:
                 strand = silent.popleft()
-                if strand.state != SILENT:
-                    continue
-                strand.state = RUNNING
-                pc: Instruction | None = strand.pc
-                while pc is not None and pc.silent:
-                    pc = pc.run(strand)
-                if pc is not None:
-                    strand.pc = pc
-                    strand.state = READY
-                    ready.append(strand)
+                if strand.state == SILENT:
+                    strand.state = RUNNING
+                    self.advance(strand, strand.pc)
             if self._undecided or self._ranked:
                 self._decide(self._next_undecided())
             elif self._later:
@@ -125,9 +133,10 @@ class Kernel:
                 if not ready:
                     return
                 strand = ready.popleft()
-                if strand.state == READY or strand.state == WOKEN:
-                    strand.state = RUNNING
-                    self.run(strand, strand.pc)
+                if strand.state == READY or strand.state == WOKEN:  # faster than `in`
+                    self.turn(strand, strand.pc)
+                    if self.watched:
+                        self.moved(strand)
         finally:
             self._draining = False
 
@@ -140,18 +149,36 @@ class Kernel:
     def resume(self, strand: Strand, pc: Instruction) -> None:
         """A waiting leaf has ended by itself (a step, already counted): go on behind it, now."""
         strand.link = None
-        strand.state = RUNNING
         if self._draining or self.silent:
             self.queue(strand, pc)
             self.arm()
             return
         self._draining = True
         try:
-            self.run(strand, pc)
+            self.turn(strand, pc)
         finally:
             self._draining = False
+        if self.watched:
+            self.moved(strand)
         if self.silent or self.ready or self._undecided or self._later:
             self.drain()
+
+    def communicated(self, strand: Strand, pc: Instruction) -> bool:
+        """COM: take the partner to its next leaf, within the step of the one that runs. Is nothing else
+        due?
+        """
+        self.steps += 1
+        self.rendezvous += 1
+        strand.state = RUNNING
+        following = pc.run(strand) if pc.silent else pc
+        if following is not None:
+            if following.silent:
+                self.advance(strand, following)
+            else:
+                strand.pc = following
+                strand.state = READY
+                self.ready.append(strand)
+        return not (self.silent or self._undecided or self._later)
 
     def queue(self, strand: Strand, pc: Instruction) -> None:
         """The strand will be advanced from here within the present step."""
@@ -207,7 +234,7 @@ class Kernel:
     # -- killing (N9)
 
     def kill(self, strands: list[Strand]) -> None:
-        """Abort these strands and all below them, left to right; a served body is closed after its content."""
+        """Abort these strands and all below them, left to right; a body is closed after its content."""
         pending: list[Strand | Body] = list(reversed(strands))
         while pending:
             item = pending.pop()
@@ -228,7 +255,7 @@ class Kernel:
             item.state = OVER
             if state == FORKED:
                 pending.extend(reversed(link.strands()))
-            elif state == WAITING or state == WOKEN:
+            elif state in (WAITING, WOKEN):
                 pc.cancel(item)  # type: ignore[attr-defined]  # only a leaf waits
             item.release()
 
@@ -253,40 +280,42 @@ class Kernel:
 
     # -- budgets
 
-    def overrun(self, strand: Strand, name: str, onward: Instruction) -> Instruction | None:
-        """K rounds at one instant: the nearest body aborts; a root waits one quantum before it goes on."""
-        self.zeno = name
-        self.note("zeno", name=name, root=strand.root.name)
-        return self.curb(strand, onward)
+    def overrun(self, strand: Strand, onward: Instruction) -> None:
+        """The turns of one instant are used up: the nearest body aborts; a root goes on a quantum later."""
+        self.zeno = onward.where.within
+        self.note("zeno", name=self.zeno, root=strand.root.name)
+        self.curb(strand, onward)
 
-    def curb(self, strand: Strand, onward: Instruction) -> Instruction | None:
-        """A budget is used up."""
+    def curb(self, strand: Strand, onward: Instruction) -> None:
         if strand.body is not None:
             self.abort_body(strand.body, "budget")
-            return None
-        strand.pc = Pause(self, onward)
-        strand.link = self.scheduler.wait(self.scheduler.now + self.budgets.quantum, strand)
+            return
+        strand.pc = pause = Pause(self, onward)
+        strand.link = entry = (pause, strand)
         strand.state = WAITING
-        return None
+        self.scheduler.wait(self.scheduler.now + self.budgets.quantum, entry)
 
     def crowded(self, strand: Strand, ab: Instruction) -> Instruction | None:
         """No further strand may come to life: the nearest body aborts; in a root, what would have forked."""
         self.note("crowded", root=strand.root.name)
         strand.cause = "budget"
-        return ab if strand.body is None else self.curb(strand, ab)
+        if strand.body is None:
+            return ab
+        self.abort_body(strand.body, "budget")
+        return None
 
     # -- what waits for something to come to rest
 
     def watch(self, label: Value, told: Callable[[], object]) -> None:
         """Call `told` after every step in which something below the guard `label` may have come to rest."""
-        self._watched[label] = told
+        self.watched[label] = told
 
     def unwatch(self, label: Value) -> None:
-        self._watched.pop(label, None)
+        self.watched.pop(label, None)
 
     def moved(self, strand: Strand) -> None:
-        """A round or a part ended, or a control waits."""
-        if self._watched and strand.guard in self._watched:
+        """The strand has had a turn: what is below its guard may have come to rest."""
+        if strand.guard in self.watched:
             if not self._moved:
                 self._later.append(self._tell_watchers)
             self._moved[strand.guard] = None
@@ -294,8 +323,8 @@ class Kernel:
     def _tell_watchers(self) -> None:
         moved, self._moved = self._moved, {}
         for label in moved:
-            if label in self._watched:
-                self._watched[label]()
+            if label in self.watched:
+                self.watched[label]()
 
     # -- roots
 
@@ -326,9 +355,8 @@ class Pause:
 
     __slots__ = ("_kernel", "_onward")
     silent = False
-    zone = 0
+    where = NOWHERE
     resting = False
-    site: Hashable = None
 
     def __init__(self, kernel: Kernel, onward: Instruction) -> None:
         self._kernel = kernel
@@ -337,10 +365,15 @@ class Pause:
     def run(self, strand: Strand) -> Instruction | None:
         return self._onward
 
-    def elapsed(self, strand: Strand) -> None:
-        self._kernel.resume(strand, self._onward)
+    def elapsed(self, entry: Entry) -> None:
+        if self.awaits(entry):
+            self._kernel.resume(entry[1], self._onward)
+
+    def awaits(self, entry: Entry) -> bool:
+        return entry[1].link is entry
 
     def cancel(self, strand: Strand) -> None:
+        strand.link = None
         self._kernel.scheduler.withdrawn()
 
 

@@ -9,13 +9,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from heapq import heappush
 
 from planner_reactor.rs.expressions import EvaluationError, is_number
 from planner_reactor.rs.terms import Expression, Value
 from planner_reactor.runtime.instructions import enter
 from planner_reactor.runtime.kernel import Kernel
 from planner_reactor.runtime.outcomes import STOPPED, Control, OpensBody, Outcome
+from planner_reactor.runtime.scheduler import Entry
 from planner_reactor.runtime.strands import RUNNING, WAITING, Frame, Instruction, Strand, Where
 from planner_reactor.runtime.values import Reader, Slots, Tuples
 
@@ -130,62 +130,60 @@ class Ran:
 class Pass:
     """Delay, SUSPEND, Term: stops when its time has passed. `adapt` gives the age at which this one ends."""
 
-    __slots__ = ("_age", "_scheduler", "adapt", "arguments", "kernel", "name", "ok", "setting", "where")
+    __slots__ = ("_adapt", "_age", "_scheduler", "kernel", "ok", "setting", "where")
     silent = False
     resting = False
 
     def __init__(self, setting: Setting, adapt: Callable[[float, Kernel], float] | None = None) -> None:
         self.setting = setting
         self.kernel = setting.kernel
-        self.name = setting.name
-        self.arguments = setting.arguments
         self.ok = setting.ok
         self.where = setting.where
-        self.adapt = adapt
-        (self._age,) = setting.readers
+        self._adapt = adapt
         self._scheduler = setting.kernel.scheduler
+        (self._age,) = setting.readers
 
     def run(self, strand: Strand) -> Instruction | None:
-        kernel = self.kernel
         try:
             age = self._age(strand.frame)
         except EvaluationError:
             return self.setting.failed.run(strand)
-        if not (age.__class__ is float or age.__class__ is int or is_number(age)):
-            return self._mistaken(strand)
-        if self.adapt is not None:
-            age = self.adapt(age, kernel)  # type: ignore[arg-type]
+        if age.__class__ is not float and age.__class__ is not int and not is_number(age):
+            return self._ended(strand, ok=False)
+        if self._adapt is not None:
+            age = self._adapt(age, self.kernel)  # type: ignore[arg-type]
         if age <= 0:  # type: ignore[operator]
-            kernel.steps += 1
-            observe(kernel, self.name, self.arguments(strand.frame), ok=True)
-            return self.ok
+            return self._ended(strand, ok=True)
+        scheduler = self._scheduler
         strand.pc = self
         strand.state = WAITING
-        scheduler = self._scheduler
-        strand.link = ticket = next(scheduler.tickets)
-        heappush(scheduler.queue, (scheduler.now + age, ticket, self, strand))  # type: ignore[operator]
+        strand.link = entry = (self, strand)
+        scheduler.wait(scheduler.now + age, entry)  # type: ignore[operator]
         return None
 
-    def _mistaken(self, strand: Strand) -> Instruction:
-        self.kernel.steps += 1
-        observe(self.kernel, self.name, self.arguments(strand.frame), ok=False)
-        strand.cause = "error"
-        return self.setting.ab
+    def elapsed(self, entry: Entry) -> None:
+        strand = entry[1]
+        if strand.link is entry:
+            kernel = self.kernel
+            kernel.steps += 1
+            if kernel.observer is not None:
+                kernel.observer((self.setting.name, self.setting.arguments(strand.frame), "ok", ()))
+            kernel.resume(strand, self.ok)
 
-    def elapsed(self, strand: Strand, ticket: int) -> None:
-        if strand.link != ticket or strand.state != WAITING:
-            return
-        kernel = self.kernel
-        kernel.steps += 1
-        if kernel.observer is not None:
-            kernel.observer((self.name, self.arguments(strand.frame), "ok", ()))
-        kernel.resume(strand, self.ok)
-
-    def awaits(self, strand: Strand, ticket: int) -> bool:
-        return strand.link == ticket and strand.state == WAITING
+    def awaits(self, entry: Entry) -> bool:
+        return entry[1].link is entry
 
     def cancel(self, strand: Strand) -> None:
-        self.kernel.scheduler.withdrawn()
+        strand.link = None
+        self._scheduler.withdrawn()
+
+    def _ended(self, strand: Strand, *, ok: bool) -> Instruction:
+        """A step at once: no time was to pass, or the argument is no number."""
+        setting = self.setting
+        self.kernel.steps += 1
+        observe(self.kernel, setting.name, setting.arguments(strand.frame), ok=ok)
+        strand.cause = "" if ok else "error"
+        return setting.ok if ok else setting.ab
 
 
 def milliseconds(age: float, kernel: Kernel) -> float:
@@ -223,8 +221,8 @@ class Use:
     strand (`spawns`), which finds the context in `value`.
     """
 
-    __slots__ = ("_announces", "_arguments", "_start", "ab", "close", "control", "kernel", "name", "ok", "setting", "site",
-                 "slot", "spawns", "targets", "zone")  # fmt: skip
+    __slots__ = ("_announces", "_arguments", "_start", "ab", "close", "control", "kernel", "name", "ok",
+                 "setting", "slot", "spawns", "targets", "where")  # fmt: skip
     silent = False
 
     def __init__(self, setting: Setting, control: Control) -> None:
@@ -265,8 +263,6 @@ class Use:
             if self._announces:
                 kernel.steps += 1
                 observe(kernel, self.name, values, ok=True, status="wait")
-            if kernel.watched:
-                kernel.moved(strand)
             return None
         strand.state = RUNNING
         onward = self.finish(strand, values, outcome)

@@ -7,13 +7,10 @@ time and an idle port costs next to nothing.
 
 from __future__ import annotations
 
-from collections.abc import Hashable
-
 from planner_reactor.rs.expressions import EvaluationError
-from planner_reactor.rs.terms import Value
-from planner_reactor.runtime.kernel import Kernel
+from planner_reactor.rs.terms import Number, Symbol, Text, Value
 from planner_reactor.runtime.leaves import Setting
-from planner_reactor.runtime.strands import SILENT, WAITING, Instruction, Strand
+from planner_reactor.runtime.strands import WAITING, Instruction, Strand
 
 SWEEP_FROM = 1024
 
@@ -21,12 +18,14 @@ SWEEP_FROM = 1024
 class Port:
     """The strands that wait at one port: all of them writers, or all of them readers."""
 
-    __slots__ = ("first", "last", "writers")
+    __slots__ = ("first", "last", "name", "pinned", "writers")
 
-    def __init__(self) -> None:
+    def __init__(self, name: Value) -> None:
+        self.name = name
         self.first: Strand | None = None
         self.last: Strand | None = None
         self.writers = False
+        self.pinned = False  # an instruction knows it
 
     def append(self, strand: Strand) -> None:
         strand.link = self
@@ -62,9 +61,21 @@ class Ports:
     def named(self, name: Value) -> Port:
         if (port := self._by_name.get(name)) is None:
             if len(self._by_name) >= self._sweep_at:
-                self._by_name = {n: p for n, p in self._by_name.items() if p.first is not None}
-                self._sweep_at = max(SWEEP_FROM, 2 * len(self._by_name))
-            port = self._by_name[name] = Port()
+                self._sweep()
+            port = self._by_name[name] = Port(name)
+        return port
+
+    def _sweep(self) -> None:
+        for idle in [n for n, p in self._by_name.items() if p.first is None and not p.pinned]:
+            del self._by_name[idle]
+        self._sweep_at = max(SWEEP_FROM, 2 * len(self._by_name))
+
+    def fixed(self, setting: Setting) -> Port | None:
+        """The port of a call whose first argument is a constant."""
+        if not isinstance(setting.terms[0], Symbol | Text | Number):
+            return None
+        port = self.named(setting.readers[0]([]))
+        port.pinned = True
         return port
 
     def waiting(self) -> dict[Value, str]:
@@ -75,7 +86,7 @@ class Ports:
 class Out:
     """OUT[p,v] writes v once a reader is there."""
 
-    __slots__ = ("arguments", "kernel", "ok", "ports", "setting", "site", "zone")
+    __slots__ = ("_name", "_port", "_value", "kernel", "ok", "ports", "setting", "where")
     silent = False
     resting = False
 
@@ -83,16 +94,16 @@ class Out:
         self.setting = setting
         self.kernel = setting.kernel
         self.ports = ports
-        self.arguments = setting.arguments
         self.ok = setting.ok
-        self.zone: int = setting.zone
-        self.site: Hashable = setting.site
+        self.where = setting.where
+        self._name, self._value = setting.readers
+        self._port = ports.fixed(setting)
 
     def run(self, strand: Strand) -> Instruction | None:
         try:
-            name, value = self.arguments(strand.frame)
-            port = self.ports.named(name)
-        except (EvaluationError, ValueError, TypeError):
+            port = self._port or self.ports.named(self._name(strand.frame))
+            value = self._value(strand.frame)
+        except (EvaluationError, TypeError):
             return self.setting.failed.run(strand)
         reader = port.first
         if reader is None or port.writers:
@@ -104,14 +115,14 @@ class Out:
             return None
         port.unlink(reader)
         leaf: In = reader.pc  # type: ignore[assignment]  # readers wait in an IN
-        for slot in leaf.targets:
-            reader.frame[slot] = value
-        communicated(self.kernel, name, value)
-        reader.pc = leaf.ok
-        reader.state = SILENT
-        strand.pc = self.ok
-        strand.state = SILENT
-        self.kernel.silent.extend((strand, reader))
+        if leaf.target >= 0:
+            reader.frame[leaf.target] = value
+        kernel = self.kernel
+        if kernel.observer is not None:
+            kernel.observer(("COM", (port.name, value), "ok", ()))
+        if kernel.communicated(reader, leaf.ok):
+            return self.ok
+        kernel.queue(strand, self.ok)
         return None
 
     def cancel(self, strand: Strand) -> None:
@@ -121,7 +132,7 @@ class Out:
 class In:
     """IN[p]<x> reads x once a writer is there."""
 
-    __slots__ = ("arguments", "kernel", "ok", "ports", "setting", "site", "targets", "zone")
+    __slots__ = ("_name", "_port", "kernel", "ok", "ports", "setting", "target", "where")
     silent = False
     resting = False
 
@@ -129,17 +140,16 @@ class In:
         self.setting = setting
         self.kernel = setting.kernel
         self.ports = ports
-        self.arguments = setting.arguments
-        self.targets = setting.targets[:1]
         self.ok = setting.ok
-        self.zone: int = setting.zone
-        self.site: Hashable = setting.site
+        self.where = setting.where
+        self.target = setting.targets[0] if setting.targets else -1
+        (self._name,) = setting.readers
+        self._port = ports.fixed(setting)
 
     def run(self, strand: Strand) -> Instruction | None:
         try:
-            (name,) = self.arguments(strand.frame)
-            port = self.ports.named(name)
-        except (EvaluationError, ValueError, TypeError):
+            port = self._port or self.ports.named(self._name(strand.frame))
+        except (EvaluationError, TypeError):
             return self.setting.failed.run(strand)
         writer = port.first
         if writer is None or not port.writers:
@@ -150,23 +160,16 @@ class In:
             return None
         port.unlink(writer)
         value, writer.value = writer.value, None
-        for slot in self.targets:
-            strand.frame[slot] = value
-        communicated(self.kernel, name, value)
+        if self.target >= 0:
+            strand.frame[self.target] = value
+        kernel = self.kernel
+        if kernel.observer is not None:
+            kernel.observer(("COM", (port.name, value), "ok", ()))
         leaf: Out = writer.pc  # type: ignore[assignment]  # writers wait in an OUT
-        writer.pc = leaf.ok
-        writer.state = SILENT
-        strand.pc = self.ok
-        strand.state = SILENT
-        self.kernel.silent.extend((writer, strand))
+        if kernel.communicated(writer, leaf.ok):
+            return self.ok
+        kernel.queue(strand, self.ok)
         return None
 
     def cancel(self, strand: Strand) -> None:
         strand.link.unlink(strand)
-
-
-def communicated(kernel: Kernel, name: Value, value: Value) -> None:
-    kernel.steps += 1
-    kernel.rendezvous += 1
-    if kernel.observer is not None:
-        kernel.observer(("COM", (name, value), "ok", ()))

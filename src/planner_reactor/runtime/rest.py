@@ -43,7 +43,6 @@ def _zone(strand: Strand) -> int:
     zones: list[int] = []
     stack: Stack | None = strand.stack
     while stack is not None:
-        zones.append(stack[2].zone)
+        zones.append(stack[2].where.zone)
         stack = stack[0]
-    own: int = getattr(strand.pc, "zone", OUTSIDE)
-    return next((zone for zone in reversed(zones) if zone), own)
+    return next((zone for zone in reversed(zones) if zone), strand.pc.where.zone)

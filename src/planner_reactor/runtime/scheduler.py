@@ -1,9 +1,12 @@
 """One scheduler owns time, order and randomness; everything that runs, runs in its loop.
 
-Actions that are due `soon` (at the present instant) come first, in order; then the timers, by time and,
-among equal times, first come first served. `post` is the one door for other threads. Random numbers come
-from named streams seeded from the scheduler's seed, so that a draw in one place never shifts those of
-another, and a run depends on its seed alone. It knows nothing of processes.
+Actions that are due `soon` (at the present instant) come first, in order; then what waits for an instant,
+by time and, among equal times, first come first served. `post` is the one door for other threads. Random
+numbers come from named streams seeded from the scheduler's seed, so that a draw in one place never shifts
+those of another, and a run depends on its seed alone. It knows nothing of processes.
+
+What waits is kept in one bucket per instant, and only the instants in a heap: periods and rounds make many
+coincide.
 """
 
 from __future__ import annotations
@@ -12,28 +15,28 @@ import random
 from collections import deque
 from collections.abc import Callable
 from heapq import heapify, heappop, heappush
-from itertools import count
 from math import inf
-from typing import Protocol
+from typing import Any, Protocol, TypeAlias
 
 from planner_reactor.runtime.clock import Clock
 
 Action = Callable[[], object]
 
-STALE_BEFORE_SWEEP = 512
-"""Cancelled timers that may lie in the queue before it is swept (and only when they are more than half of
-it).
-"""
+SWEEP_FROM = 512
+"""Cancelled entries that may lie in the queue before it is first swept."""
 
 
 class Timed(Protocol):
-    """What stands in the queue: it is told when its instant has come, and says whether it still waits for
-    it.
-    """
+    """What waits for an instant on behalf of a subject."""
 
-    def elapsed(self, ticket: int) -> None: ...
+    def elapsed(self, entry: Entry) -> None:
+        """The instant has come; without effect if the entry is no longer awaited."""
 
-    def awaits(self, ticket: int) -> bool: ...
+    def awaits(self, entry: Entry) -> bool: ...
+
+
+Entry: TypeAlias = tuple[Timed, Any]
+"""(what waits, its subject); told apart by identity."""
 
 
 class Timer:
@@ -55,12 +58,12 @@ class Timer:
             self._action = None
             self._scheduler.withdrawn()
 
-    def elapsed(self, ticket: int) -> None:
+    def elapsed(self, entry: Entry) -> None:
         action, self._action = self._action, None
         if action is not None:
             action()
 
-    def awaits(self, ticket: int) -> bool:
+    def awaits(self, entry: Entry) -> bool:
         return self._action is not None
 
 
@@ -69,23 +72,26 @@ class Scheduler:
     run.
     """
 
-    __slots__ = ("_queue", "_soon", "_stale", "_stopped", "_streams", "_tickets", "clock", "now", "seed")
+    __slots__ = ("_buckets", "_instants", "_present", "_soon", "_stale", "_stopped", "_streams", "_sweep_at",
+                 "clock", "now", "seed")  # fmt: skip
 
     def __init__(self, clock: Clock, *, seed: int = 0) -> None:
         self.clock = clock
         self.seed = seed
         self.now = clock.read()
-        self._queue: list[tuple[float, int, Timed]] = []
-        self._tickets = count(1)
+        self._instants: list[float] = []
+        self._buckets: dict[float, Entry | list[Entry]] = {}
+        self._present: list[Entry] = []  # what is still due at the present instant, last first
         self._soon: deque[Action] = deque()
         self._stale = 0
+        self._sweep_at = SWEEP_FROM
         self._stopped = False
         self._streams: dict[str, random.Random] = {}
 
     def call_at(self, when: float, action: Action) -> Timer:
         """Run the action at this instant (now, if that is past)."""
         timer = Timer(self, max(when, self.now), action)
-        heappush(self._queue, (timer.when, next(self._tickets), timer))
+        self.wait(timer.when, (timer, None))
         return timer
 
     def call_after(self, delay: float, action: Action) -> Timer:
@@ -93,7 +99,7 @@ class Scheduler:
         return self.call_at(self.now + delay, action)
 
     def soon(self, action: Action) -> None:
-        """Run the action at the present instant, after what is already due. For the scheduler's own thread."""
+        """Run the action at the present instant, before what waits for it. For the scheduler's own thread."""
         self._soon.append(action)
 
     def post(self, action: Action) -> None:
@@ -101,19 +107,37 @@ class Scheduler:
         self._soon.append(action)
         self.clock.interrupt()
 
-    def wait(self, when: float, waiter: Timed) -> int:
-        """Tell the waiter at this instant, if it still `awaits` the ticket returned (cheaper than a Timer)."""
-        ticket = next(self._tickets)
-        heappush(self._queue, (when, ticket, waiter))
-        return ticket
+    def wait(self, when: float, entry: Entry) -> None:
+        """Tell the entry at this instant, which is not past (cheaper than a Timer)."""
+        bucket = self._buckets.get(when)
+        if bucket is None:
+            self._buckets[when] = entry
+            heappush(self._instants, when)
+        elif isinstance(bucket, list):
+            bucket.append(entry)
+        else:
+            self._buckets[when] = [bucket, entry]
 
     def withdrawn(self) -> None:
-        """A timer or a waiter no longer awaits its ticket: sweep the queue when most of it is like that."""
+        """An entry is no longer awaited. When many are not, they are swept away."""
         self._stale += 1
-        if self._stale > STALE_BEFORE_SWEEP and self._stale * 2 > len(self._queue):
-            self._queue[:] = [entry for entry in self._queue if entry[2].awaits(entry[1])]
-            heapify(self._queue)
-            self._stale = 0
+        if self._stale >= self._sweep_at:
+            self._sweep()
+
+    def _sweep(self) -> None:
+        kept: dict[float, Entry | list[Entry]] = {}
+        count = 0
+        for when, bucket in self._buckets.items():
+            entries = bucket if isinstance(bucket, list) else [bucket]
+            awaited = [entry for entry in entries if entry[0].awaits(entry)]
+            if awaited:
+                kept[when] = awaited
+                count += len(awaited)
+        self._buckets = kept
+        self._instants[:] = kept
+        heapify(self._instants)
+        self._stale = 0
+        self._sweep_at = max(SWEEP_FROM, count)
 
     def random(self, stream: str) -> random.Random:
         """The generator of this name; the same seed and name give the same draws in every process."""
@@ -133,25 +157,51 @@ class Scheduler:
         """
         self._stopped = False
         limit = inf if until is None else until
-        queue, soon, reach = self._queue, self._soon, self.clock.reach
+        if self.clock.jumps:
+            self._run_jumping(limit)
+        else:
+            self._run_waiting(limit)
+
+    def _run_jumping(self, limit: float) -> None:
+        soon, instants = self._soon, self._instants
         while not self._stopped:
             if soon:
                 soon.popleft()()
                 continue
-            when = queue[0][0] if queue else inf
-            if when > self.now:
-                if when > limit and self.now >= limit:
-                    return
-                reached = reach(when if when < limit else limit)
-                if reached == inf:
-                    return
-                self.now = reached
-                if reached < when:
+            if self._present:
+                entry = self._present.pop()
+            elif instants and instants[0] <= limit:
+                self.now = when = heappop(instants)
+                bucket = self._buckets.pop(when)
+                if isinstance(bucket, list):
+                    bucket.reverse()
+                    self._present = bucket
                     continue
-            _, ticket, timed = heappop(queue)
-            timed.elapsed(ticket)
+                entry = bucket
+            else:
+                if limit < inf:
+                    self.now = max(self.now, limit)
+                return
+            entry[0].elapsed(entry)
+
+    def _run_waiting(self, limit: float) -> None:
+        soon, instants, clock = self._soon, self._instants, self.clock
+        while not self._stopped:
+            self.now = max(self.now, clock.read())
+            for _ in range(len(soon)):  # not what they add: time goes on
+                soon.popleft()()
+            while instants and instants[0] <= self.now:
+                bucket = self._buckets.pop(heappop(instants))
+                self._present[:0] = reversed(bucket) if isinstance(bucket, list) else [bucket]
+            if self._present:
+                entry = self._present.pop()
+                entry[0].elapsed(entry)
+            elif not soon:
+                if self.now >= limit:
+                    return
+                clock.reach(min(limit, instants[0] if instants else inf))
 
     @property
     def idle(self) -> bool:
         """Is nothing due, now or later?"""
-        return not self._soon and not self._queue
+        return not (self._soon or self._present or self._instants)

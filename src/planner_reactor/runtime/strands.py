@@ -9,6 +9,7 @@ arises. Instructions are known here only by what a strand needs of them.
 from __future__ import annotations
 
 from collections.abc import Hashable, Iterator
+from dataclasses import dataclass
 from typing import Any, Final, Protocol, TypeAlias
 
 from planner_reactor.rs.terms import Value
@@ -41,11 +42,28 @@ Stack: TypeAlias = tuple[Any, Frame, "Caller", int]
 """(the rest of the stack, the caller's frame, the call, how many calls lie below)."""
 
 
+@dataclass(frozen=True, slots=True)
+class Where:
+    """Where an instruction stands: in which definition, in which zone of it, and (leaves) where in the
+    text.
+    """
+
+    within: str = ""
+    zone: int = OUTSIDE
+    site: Hashable = None
+
+
+NOWHERE: Final = Where()
+
+
 class Instruction(Protocol):
     """One linked instruction. `silent`: it belongs to the step before it; the others are leaves."""
 
     @property
     def silent(self) -> bool: ...
+
+    @property
+    def where(self) -> Where: ...
 
     def run(self, strand: Strand) -> Instruction | None:
         """The instruction to go on with at once, nothing else being due first; None if there is none."""
@@ -63,15 +81,12 @@ class Caller(Instruction, Protocol):
     @property
     def targets(self) -> tuple[int, ...]: ...
 
-    @property
-    def zone(self) -> int: ...
-
 
 class Strand:
-    """One sequential thread. `body`, `root`, `guard` and `site` are for controls; the rest is the kernel's."""
+    """One sequential thread. `body`, `root`, `guard`, `site` are for controls, the rest for the kernel."""
 
-    __slots__ = ("after", "before", "body", "cause", "fork", "frame", "guard", "index", "link", "meter", "pc", "root",
-                 "stack", "state", "value")  # fmt: skip
+    __slots__ = ("after", "before", "body", "cause", "fork", "frame", "guard", "index", "link", "meter", "pc",
+                 "root", "stack", "state", "value")  # fmt: skip
 
     def __init__(self, pc: Instruction, frame: Frame, root: Root) -> None:
         self.pc = pc
@@ -93,8 +108,7 @@ class Strand:
     @property
     def site(self) -> Hashable:
         """The identity of the leaf's place in the text."""
-        place: Hashable = self.pc.site  # type: ignore[attr-defined]  # only leaves are asked
-        return place
+        return self.pc.where.site
 
     @property
     def alive(self) -> bool:
@@ -109,13 +123,6 @@ class Strand:
         strand.meter = self.meter
         strand.guard = self.guard
         return strand
-
-    def elapsed(self, ticket: int) -> None:
-        if self.link == ticket and self.state == WAITING:
-            self.pc.elapsed(self)  # type: ignore[attr-defined]  # it waits for time
-
-    def awaits(self, ticket: int) -> bool:
-        return self.state == WAITING and self.link == ticket
 
     def release(self) -> None:
         """Clear every link: the strand is over."""
@@ -199,9 +206,9 @@ class Body:
         "opener",
         "outcome",
         "parent",
-        "rounds",
         "stack",
         "strand",
+        "turns",
     )
 
     def __init__(
@@ -215,7 +222,7 @@ class Body:
         self.frame = strand.frame
         self.stack = strand.stack
         self.outcome: str | None = None
-        self.rounds = 0
+        self.turns = 0
         self.instant = -1.0
 
     def enclosing(self) -> Iterator[Body]:
@@ -231,7 +238,7 @@ class Root:
     ended.
     """
 
-    __slots__ = ("cause", "instant", "name", "number", "outcome", "results", "rounds", "strand")
+    __slots__ = ("cause", "instant", "name", "number", "outcome", "results", "strand", "turns")
 
     def __init__(self, name: str, number: int) -> None:
         self.name = name
@@ -240,7 +247,7 @@ class Root:
         self.cause = ""
         self.results: dict[str, Value] = {}
         self.strand: Strand | None = None
-        self.rounds = 0
+        self.turns = 0
         self.instant = -1.0
 
     def __repr__(self) -> str:

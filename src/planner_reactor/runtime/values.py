@@ -29,6 +29,7 @@ Slots: TypeAlias = Callable[[str], int]
 """The slot of a variable in the frame; -1 if nothing binds it."""
 Reader: TypeAlias = Callable[[Frame], Value]
 Tuples: TypeAlias = Callable[[Frame], tuple[Value, ...]]
+Frames: TypeAlias = Callable[[Frame], Frame]
 
 _SMALL = 1 << 200  # well below the bound on integers of `rs.expressions`
 
@@ -61,10 +62,39 @@ def tuples(expressions: tuple[Expression, ...], slots: Slots, functions: Functio
             return lambda frame: (one(frame),)
         case [one, two]:
             return lambda frame: (one(frame), two(frame))
-        case [one, two, three]:
-            return lambda frame: (one(frame), two(frame), three(frame))
         case _:
             return lambda frame: tuple([r(frame) for r in readers])
+
+
+def frames(expressions: tuple[Expression, ...], slots: Slots, functions: Functions) -> Frames:
+    """A closure that gives a new frame that begins with the values of the expressions."""
+    readers = [reader(e, slots, functions) for e in expressions]
+    match readers:
+        case []:
+            return lambda frame: []
+        case [one]:
+            return _single(expressions[0], one, slots)
+        case [one, two]:
+            return lambda frame: [one(frame), two(frame)]
+        case _:
+            return lambda frame: [r(frame) for r in readers]
+
+
+def _single(expression: Expression, one: Reader, slots: Slots) -> Frames:
+    """A frame of one value; the commonest, a variable and a number, without a further call."""
+    match expression:
+        case Operation("+" | "-" as sign, Variable(name), Number(int(number))) if slots(name) >= 0:
+            slot, step = slots(name), number if sign == "+" else -number
+
+            def single(frame: Frame) -> Frame:
+                value = frame[slot]
+                if value.__class__ is int and -_SMALL < value < _SMALL:
+                    return [value + step]
+                return [one(frame)]
+
+            return single
+        case _:
+            return lambda frame: [one(frame)]
 
 
 def _constant(value: Value) -> Reader:
