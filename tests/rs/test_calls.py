@@ -33,7 +33,7 @@ CODES = (
         ("P = Equal[1]", 5, "argument-count", "Equal takes 2 to 3 arguments, 1 given"),
         ("P = ASSERT", 5, "argument-count", "ASSERT takes at least 1 argument, 0 given"),
         ("P = Q[1]  Q = Act[1]", 5, "argument-count", "Q takes 0 arguments, 1 given, expected Q"),
-        ("P = Q  Q[a, b] = Act[a + b]", 5, "argument-count", "Q takes 2 arguments, 0 given, expected Q[a, b]"),
+        ("P = Q  Q[a, b] = Act[a + b]", 5, "argument-count", "Q takes 2 arguments, 0 given"),
         ("P = Sense<x, y>", 5, "result-count", "Sense returns 1 result, 2 named, expected Sense<x>"),
         ("P = Delay[1]<x>", 5, "result-count", "Delay returns 0 results, 1 named, expected Delay[number]"),
         ("P = Q<x, y>  Q<z> = Sense<z>", 5, "result-count", "Q returns 1 result, 2 named, expected Q<z>"),

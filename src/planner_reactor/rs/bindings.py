@@ -49,8 +49,8 @@ NOTHING: frozenset[str] = frozenset()
 def check_bindings(linked: Linked) -> Iterator[Diagnostic]:
     """Errors "unbound" and warnings "may-be-unbound"."""
     unknown: Ends = (None, None)
-    ends = solve(linked.calls, unknown, lambda number, known: _Walk(linked, known, number).schema_ends())
-    for number in range(len(linked.schemas)):
+    ends = solve(linked.calls_in_focus, unknown, lambda n, known: _Walk(linked, known, n).schema_ends())
+    for number in linked.focus:
         walk = _Walk(linked, ends, number)
         stops, _ = walk.schema_ends()
         yield from walk.findings

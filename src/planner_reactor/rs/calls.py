@@ -50,8 +50,8 @@ EXPECTED: dict[Kind, str] = {
 def check_calls(linked: Linked, flows: Flows) -> Iterator[Diagnostic]:
     """Errors "unknown-process", "argument-count", "result-count", "no-clause", "argument-kind" and
     "unknown-function"."""
-    for number, facts in enumerate(linked.facts):
-        for call in facts.calls:
+    for number in linked.focus:
+        for call in linked.facts[number].calls:
             if call.name in linked.signatures:
                 yield from _basic(linked.signatures[call.name], call)
             elif linked.clauses(call.name):

@@ -33,7 +33,7 @@ which.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 
 from planner_reactor.errors import Diagnostic
 from planner_reactor.rs.bindings import check_bindings
@@ -43,11 +43,11 @@ from planner_reactor.rs.guardedness import check_guardedness
 from planner_reactor.rs.linking import Linked
 from planner_reactor.rs.parser import read_program
 from planner_reactor.rs.ports import check_ports
-from planner_reactor.rs.situations import check_situations
+from planner_reactor.rs.situations import check_service, check_situations
 from planner_reactor.rs.source import Source
 from planner_reactor.rs.terms import Program
 from planner_reactor.rs.unused import check_unused, reached_from
-from planner_reactor.rs.uses import flows, uses
+from planner_reactor.rs.uses import Flows, flows, uses
 from planner_reactor.rs.vocabulary import BUILT_IN, Signature
 
 
@@ -69,16 +69,43 @@ def check(
     linked = Linked(program, {**signatures, **BUILT_IN}, functions)
     known = flows(linked)
     used = uses(linked, known, among=reached_from(linked, roots))
-    found = [
-        *check_clauses(linked),
-        *check_calls(linked, known),
-        *check_bindings(linked),
-        *check_guardedness(linked),
-        *check_situations(linked, used),
-        *check_unused(linked, roots),
-        *(check_ports(linked, used, ports) if roots or complete else ()),
-    ]
-    return tuple(sorted(dict.fromkeys(found), key=lambda f: (f.place.file, f.place.line, f.place.column)))
+    return _in_order(
+        _check_definitions(linked, known),
+        check_service(used),
+        check_unused(linked, roots),
+        check_ports(linked, used, ports) if roots or complete else (),
+    )
+
+
+def check_addition(
+    program: Program,
+    added: Program,
+    *,
+    signatures: Mapping[str, Signature] = BUILT_IN,
+    functions: Collection[str] = frozenset(),
+) -> tuple[Diagnostic, ...]:
+    """What is wrong with the definitions `added` beside those of `program`, which have been checked before.
+
+    What one definition alone does not show, an unserved port or situation, an unused definition, is not
+    looked for.
+    """
+    together = program.with_schemas(added.schemas)
+    linked = Linked(together, {**signatures, **BUILT_IN}, functions, given=len(program))
+    return _in_order(_check_definitions(linked, flows(linked)))
+
+
+def _check_definitions(linked: Linked, known: Flows) -> Iterator[Diagnostic]:
+    yield from check_clauses(linked)
+    yield from check_calls(linked, known)
+    yield from check_bindings(linked)
+    yield from check_guardedness(linked)
+    yield from check_situations(linked)
+
+
+def _in_order(*found: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
+    """All findings, each once, as they stand in the text."""
+    once = dict.fromkeys(finding for findings in found for finding in findings)
+    return tuple(sorted(once, key=lambda f: (f.place.file, f.place.line, f.place.column)))
 
 
 def check_text(

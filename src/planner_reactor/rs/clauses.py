@@ -17,7 +17,7 @@ from planner_reactor.rs.terms import Parameter, Value
 
 def check_clauses(linked: Linked) -> Iterator[Diagnostic]:
     """Errors "overlapping-clauses", "clause-form" and "redefined"."""
-    for name in linked.names:
+    for name in dict.fromkeys(linked.schemas[number].name for number in linked.focus):
         numbers = linked.clauses(name)
         first = linked.schemas[numbers[0]]
         if name in linked.signatures:

@@ -48,15 +48,15 @@ NEVER = Silent()
 
 def check_guardedness(linked: Linked) -> Iterator[Diagnostic]:
     """Errors "unguarded-recursion" and "silent-loop"."""
-    known = solve(
-        linked.calls, NEVER, lambda number, known: Silence(linked, known).of(linked.schemas[number].body)
-    )
+    bodies = {number: linked.schemas[number].body for number in linked.calls_in_focus}
+    known = solve(linked.calls_in_focus, NEVER, lambda n, known: Silence(linked, known).of(bodies[n]))
     silence = Silence(linked, known)
+    for number in linked.focus:
+        yield from (_silent_loop(linked, number, loop) for loop in silence.loops(bodies[number]))
     first_calls: dict[int, tuple[int, ...]] = {}
-    for number, schema in enumerate(linked.schemas):
-        first = (t for call in silence.first_calls(schema.body) for t in linked.targets(call))
+    for number, body in bodies.items():
+        first = (t for call in silence.first_calls(body) for t in linked.targets(call))
         first_calls[number] = tuple(dict.fromkeys(first))
-        yield from (_silent_loop(linked, number, loop) for loop in silence.loops(schema.body))
     for cycle in cycles(first_calls):
         yield _recursion(linked, way_round(first_calls, cycle[0]))
 

@@ -4,6 +4,9 @@ A `Linked` program numbers the definitions of a program in their order and answe
 select, given the constants among its arguments. Names of basic and built-in processes refer to their
 signatures, whatever a text defines. An *open family* is a name X used as in equation (3) of R §5.3, `ADD<k>
 :: (E[k] # X[k])`: its clauses are added while the program runs, so that there may be none yet.
+
+A running program is checked anew with every addition. Only the added definitions, its `focus`, are then
+looked at, and those that they lead to; what was there before cannot call what it did not know.
 """
 
 from __future__ import annotations
@@ -14,6 +17,7 @@ from typing import TypeAlias
 
 from planner_reactor.errors import Diagnostic, Place
 from planner_reactor.rs.facts import Facts, facts_of
+from planner_reactor.rs.graphs import reachable
 from planner_reactor.rs.terms import (
     Call,
     Expression,
@@ -41,9 +45,16 @@ class Linked:
     """A program with what its calls refer to."""
 
     def __init__(
-        self, program: Program, signatures: Mapping[str, Signature], functions: Collection[str]
+        self,
+        program: Program,
+        signatures: Mapping[str, Signature],
+        functions: Collection[str],
+        *,
+        given: int = 0,
     ) -> None:
+        """The first `given` definitions have been checked before."""
         self.schemas: tuple[Schema, ...] = program.schemas
+        self.focus = range(given, len(self.schemas))
         self.signatures = signatures
         self.functions = functions
         self.facts: tuple[Facts, ...] = tuple(facts_of(schema.body) for schema in self.schemas)
@@ -85,6 +96,13 @@ class Linked:
             number: tuple(dict.fromkeys(t for call in facts.calls for t in self.targets(call)))
             for number, facts in enumerate(self.facts)
         }
+
+    @cached_property
+    def calls_in_focus(self) -> Calls:
+        """The part of the call graph that the definitions in focus lead to."""
+        if len(self.focus) == len(self.schemas):
+            return self.calls
+        return {number: self.calls[number] for number in sorted(reachable(self.calls, self.focus))}
 
     def place(self, number: int) -> Place:
         """Where a definition stands."""

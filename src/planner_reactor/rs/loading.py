@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 
 from planner_reactor.errors import RSError
-from planner_reactor.rs.checks import check
+from planner_reactor.rs.checks import check, check_addition
 from planner_reactor.rs.parser import parse_program
 from planner_reactor.rs.source import Source
 from planner_reactor.rs.terms import Program
@@ -33,13 +33,11 @@ def load(
     With `roots` the program is taken to be complete (`checks`).
     """
     program = parse_program(text, file=file)
-    found = check(
-        given.with_schemas(program.schemas),
-        signatures=signatures,
-        functions=functions,
-        roots=roots,
-        ports=ports,
-    )
+    if roots:
+        together = given.with_schemas(program.schemas)
+        found = check(together, signatures=signatures, functions=functions, roots=roots, ports=ports)
+    else:
+        found = check_addition(given, program, signatures=signatures, functions=functions)
     errors = [f for f in found if f.severity == "error"]
     if errors:
         raise RSError(Source(text, file).shown(errors))

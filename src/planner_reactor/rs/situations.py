@@ -8,10 +8,10 @@ by `::`: a `:;` serves one instance at a time, and the inner one would wait for 
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterable, Iterator
 
 from planner_reactor.errors import Diagnostic, Place, nearest
-from planner_reactor.rs.facts import facts_of
+from planner_reactor.rs.facts import Service, facts_of
 from planner_reactor.rs.graphs import cycles, reachable
 from planner_reactor.rs.linking import Linked, error, value_of, warning
 from planner_reactor.rs.terms import Expression, Process, calls
@@ -20,14 +20,14 @@ from planner_reactor.rs.uses import Uses
 ASSERTING = frozenset({"ASSERT", "REASSERT"})
 
 
-def check_situations(linked: Linked, used: Uses) -> Iterator[Diagnostic]:
-    """Errors "sit-position", "self-call" and "asserted-below-itself", warning "unserved-situation"."""
+def check_situations(linked: Linked) -> Iterator[Diagnostic]:
+    """Errors "sit-position", "self-call" and "asserted-below-itself"."""
     yield from _reactions(linked)
     yield from _below_itself(linked)
-    yield from _unserved(used)
 
 
-def _unserved(used: Uses) -> Iterator[Diagnostic]:
+def check_service(used: Uses) -> Iterator[Diagnostic]:
+    """Warnings "unserved-situation"."""
     served = used.of([("SIT", 0)])
     asserted = used.of([("ASSERT", 0), ("REASSERT", 0)])
     if ("SIT", 0) in used.open_sinks:
@@ -41,24 +41,29 @@ def _unserved(used: Uses) -> Iterator[Diagnostic]:
 
 def _reactions(linked: Linked) -> Iterator[Diagnostic]:
     """The rules for SIT in everything that stands beside a guard, or is called from there."""
-    inline = [part for facts in linked.facts for part in facts.guarded]
-    called = [t for part in inline for call in calls(part) for t in linked.targets(call)]
-    reactions = reachable(linked.calls, called)
-    strays = [sit for part in inline for sit in facts_of(part).strays]
+    beside = [part for number in linked.focus for part in linked.facts[number].guarded]
+    newly = reachable(linked.calls, _called(linked, beside))
+    guarded = reachable(linked.calls, _called(linked, [p for facts in linked.facts for p in facts.guarded]))
+    reactions = [number for number in guarded if number in newly or number in linked.focus]
+    strays = [sit for part in beside for sit in facts_of(part).strays]
     strays += [sit for number in reactions for sit in linked.facts[number].strays]
     for sit in strays:
         hint = "write SIT[…]<k> :; (…) or SIT[…]<k> :: (…)"
         message = "in a reaction a SIT is the whole left side of `:;` or `::`"
         yield error(sit.place, "sit-position", message, hint)
-    together = {number: i for i, cycle in enumerate(cycles(linked.calls)) for number in cycle}
+    cycle_of = {number: set(cycle) for cycle in cycles(linked.calls_in_focus) for number in cycle}
     for number in reactions:
-        if number in together:
-            yield from _self_calls(linked, number, {n for n in together if together[n] == together[number]})
+        yield from _self_calls(linked, number, cycle_of.get(number, ()))
+
+
+def _called(linked: Linked, processes: Iterable[Process]) -> list[int]:
+    return [target for process in processes for call in calls(process) for target in linked.targets(call)]
 
 
 def _self_calls(linked: Linked, number: int, cycle: Collection[int]) -> Iterator[Diagnostic]:
+    """Calls from which control comes back to the definition, on its cycle of the call graph."""
     name = linked.schemas[number].name
-    for service in linked.facts[number].services:
+    for service in linked.facts[number].services if cycle else ():
         for call in calls(service.body):
             if any(target in cycle for target in linked.targets(call)):
                 message = f"the body of this SIT calls {name}, which holds it"
@@ -67,25 +72,31 @@ def _self_calls(linked: Linked, number: int, cycle: Collection[int]) -> Iterator
 
 
 def _below_itself(linked: Linked) -> Iterator[Diagnostic]:
-    asserted: dict[str, dict[str, Place | None]] = {}
-    spawned: set[str] = set()
+    services: dict[str, list[Service]] = {}
     for facts in linked.facts:
         for service in facts.services:
             name = _name(service.situation)
             if name is not None:
-                asserted.setdefault(name, {}).update(_asserted(linked, service.body))
-                spawned |= {name} if service.spawns else set()
+                services.setdefault(name, []).append(service)
+    asserted: dict[str, dict[str, Place | None]] = {}
+    waiting = [_name(s.situation) for number in linked.focus for s in linked.facts[number].services]
+    while waiting:
+        name = waiting.pop()
+        if name is not None and name in services and name not in asserted:
+            asserted[name] = _asserted(linked, [service.body for service in services[name]])
+            waiting.extend(asserted[name])
     for cycle in cycles(asserted):
+        together = set(cycle)
         for above in cycle:
             for name, place in asserted[above].items():
-                if name in cycle and name not in spawned:
+                if name in together and not any(service.spawns for service in services[name]):
                     yield _asserted_below(name, above, place)
 
 
-def _asserted(linked: Linked, body: Process) -> dict[str, Place | None]:
-    """The situations that this body asserts, itself or through definitions, as far as the text names them."""
-    own = list(calls(body))
-    through = reachable(linked.calls, [t for call in own for t in linked.targets(call)])
+def _asserted(linked: Linked, bodies: Collection[Process]) -> dict[str, Place | None]:
+    """The situations that bodies assert, themselves or through definitions, as far as the text names them."""
+    own = [call for body in bodies for call in calls(body)]
+    through = reachable(linked.calls, _called(linked, bodies))
     found: dict[str, Place | None] = {}
     for call in (*own, *(c for number in through for c in linked.facts[number].calls)):
         name = _name(call.arguments[0]) if call.name in ASSERTING and call.arguments else None

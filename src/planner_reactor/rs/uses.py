@@ -55,7 +55,7 @@ class Uses:
 def flows(linked: Linked) -> Flows:
     """Where the parameters of each definition go. Arguments of kind "any" are not followed."""
     nothing: Mapping[str, frozenset[Sink]] = {}
-    return solve(linked.calls, nothing, lambda number, known: _flow(linked, number, known))
+    return solve(linked.calls_in_focus, nothing, lambda number, known: _flow(linked, number, known))
 
 
 def uses(linked: Linked, known: Flows, *, among: Collection[int]) -> Uses:
