@@ -123,7 +123,7 @@ def test_killing_a_program_leaves_no_command_but_the_arms_own_putting_away() -> 
         executer.run(until=scheduler.now)
         assert world.arm.live in ("", "put away")  # type: ignore[attr-defined]
         assert world.balanced()
-    executer.run(until=scheduler.now + 20.0)
+    scheduler.run(until=scheduler.now + 20.0)
     assert world.ledger()["held"] == 0
     assert world.balanced()
 
