@@ -126,7 +126,7 @@ def chance(scheduler: Scheduler) -> Host:
         yield draw.choice([0.0, 1.0])
         if draw.random() < 0.2:
             raise Aborted("as it happens")
-        return draw.choice([0, 1, 2])  # noqa: B901  the value of a basic process
+        return draw.choice([0, 1, 2])
 
     return host
 

@@ -22,11 +22,11 @@ from planner_reactor.rs.terms import (
     If,
     Loop,
     Not,
+    Number,
     Par,
     Process,
     Seq,
     Spawn,
-    Number,
     cond,
     seq,
 )

@@ -103,8 +103,9 @@ class Transactions:
         """A reaction was removed by one of the scripts."""
         for transaction in self._by_root.values():
             if label in transaction.adaptation.kills:
+                if not transaction.kills:
+                    transaction.surgery = self._scheduler.now
                 transaction.kills.append(label)
-                transaction.surgery = self._scheduler.now
 
     def ended(self, root: Root) -> None:
         """A root of the executer has ended: if it was a script, its transaction is over."""

@@ -18,7 +18,7 @@ from planner_reactor.errors import RefusedError, RSError
 from planner_reactor.link.messages import Adaptation
 from planner_reactor.reactor.structure import Reaction, children, cycle, reaction_of
 from planner_reactor.rs.loading import load
-from planner_reactor.rs.terms import Program, Schema, Value
+from planner_reactor.rs.terms import Schema, Value
 from planner_reactor.rs.vocabulary import Signature
 
 
@@ -32,7 +32,6 @@ class Standing:
     seen: Collection[int]
     epoch: int
     used_labels: Collection[int]
-    program: Program
     signatures: Mapping[str, Signature]
     functions: Mapping[str, Callable[..., Value]]
 
@@ -78,12 +77,10 @@ def _definitions(adaptation: Adaptation, standing: Standing) -> tuple[Schema, ..
             file=f"<adaptation {adaptation.id}>",
             signatures=standing.signatures,
             functions=standing.functions,
-            given=standing.program,
         )
     except RSError as problem:
         raise RefusedError("text", str(problem)) from None
-    known = set(standing.program.schemas)
-    return tuple(schema for schema in program.schemas if schema not in known)
+    return program.schemas
 
 
 def _labels(adaptation: Adaptation, standing: Standing, schemas: Sequence[Schema]) -> tuple[Reaction, ...]:

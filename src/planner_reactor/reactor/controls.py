@@ -44,10 +44,15 @@ class BuiltIn:
         self.withdraw(strand)
 
 
+def served(body: Body) -> tuple[Instance, Reaction]:
+    """Whom a body serves, and by which reaction: what `Sit` gave as its context."""
+    context: tuple[Instance, Reaction] = body.context  # type: ignore[assignment]  # only SIT opens bodies
+    return context
+
+
 def owner_of(strand: Strand) -> Instance | None:
     """The instance whose body this strand runs in: it owns what is asserted there."""
-    body = strand.body
-    return None if body is None else body.context[0]  # type: ignore[index,no-any-return]
+    return None if strand.body is None else served(strand.body)[0]
 
 
 class Sit:
@@ -80,11 +85,11 @@ class Sit:
         self._situations.left_waiting(situation, reaction, strand)
 
     def opened(self, strand: Strand, body: Body) -> None:
-        instance, reaction = body.context  # type: ignore[misc]
+        instance, reaction = served(body)
         self._situations.enter(instance, reaction)
 
     def closed(self, body: Body) -> None:
-        instance, reaction = body.context  # type: ignore[misc]
+        instance, reaction = served(body)
         self._situations.leave(instance, reaction, cut=body.outcome == "killed")
 
 

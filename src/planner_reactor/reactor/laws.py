@@ -11,6 +11,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from planner_reactor.reactor.adaptation import Transaction
+
 if TYPE_CHECKING:
     from planner_reactor.reactor.reactor import Reactor
 
@@ -81,17 +83,24 @@ class Laws:
             self.interruptions += 1
             self.breach(2, f"a body of instance {fields['instance']} of {fields['situation']} was cut off")
 
-    def applied(self, adaptation_id: int, epoch: int, changes: list[tuple[str, int, int]]) -> None:
-        """Laws 6 and 7: an id once, per situation base = previous version, epochs never fall."""
-        if adaptation_id in self._applied:
-            self.breach(6, f"adaptation {adaptation_id} was applied twice")
-        self._applied.add(adaptation_id)
-        if epoch < self._epoch:
-            self.breach(7, f"epoch {epoch} after {self._epoch}")
-        self._epoch = epoch
-        for situation, base, previous in changes:
-            if base != previous:
-                self.breach(7, f"{situation} changed from version {previous}, planned against {base}")
+    def applied(self, transaction: Transaction, versions: dict[str, int]) -> None:
+        """Laws 1, 4, 6 and 7 of a transaction that has just ended well; `versions` are those before it."""
+        adaptation = transaction.adaptation
+        self._late(transaction)
+        self._half(transaction)
+        if left := [label for label in adaptation.kills if label not in transaction.kills]:
+            self.breach(1, f"adaptation {adaptation.id} was applied without killing {left}")
+        if adaptation.id in self._applied:
+            self.breach(6, f"adaptation {adaptation.id} was applied twice")
+        self._applied.add(adaptation.id)
+        if adaptation.epoch < self._epoch:
+            self.breach(7, f"epoch {adaptation.epoch} after {self._epoch}")
+        self._epoch = adaptation.epoch
+        for change in adaptation.changes:
+            if change.base != versions[change.situation]:
+                self.breach(
+                    7, f"{change.situation} was at version {versions[change.situation]}, not at {change.base}"
+                )
 
     # -- how things stand
 
@@ -109,17 +118,22 @@ class Laws:
         """Law 1: of an adaptation everything is there or nothing."""
         live = self._reactor.reactions
         for transaction in self._reactor.transactions.under_way:
-            if transaction.kills and self._reactor.scheduler.now > transaction.surgery + GRACE:
-                self.breach(1, f"adaptation {transaction.adaptation.id} is half applied")
+            self._half(transaction)
             if not transaction.kills and (early := [a for a in transaction.adaptation.adds if a in live]):
                 self.breach(1, f"P{early} of adaptation {transaction.adaptation.id} were added before the kills")
 
+    def _half(self, transaction: Transaction) -> None:
+        if transaction.kills and self._reactor.scheduler.now > transaction.surgery + GRACE:
+            self.breach(1, f"adaptation {transaction.adaptation.id} was half applied for some time")
+
     def _bounded(self) -> None:
         """Law 4: an adaptation under way is within its bound."""
-        now = self._reactor.scheduler.now
         for transaction in self._reactor.transactions.under_way:
-            if now > transaction.received + transaction.limit + GRACE:
-                self.breach(4, f"adaptation {transaction.adaptation.id} exceeds its bound of {transaction.limit} s")
+            self._late(transaction)
+
+    def _late(self, transaction: Transaction) -> None:
+        if self._reactor.scheduler.now > transaction.received + transaction.limit + GRACE:
+            self.breach(4, f"adaptation {transaction.adaptation.id} exceeds its bound of {transaction.limit} s")
 
     def _owned(self) -> None:
         """Law 5: every inhibition has exactly one live owner."""

@@ -10,7 +10,7 @@ trace; the laws are asked after every event. A failed assumption disables, at on
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Hashable, Iterable
+from collections.abc import Callable, Hashable, Iterable
 from typing import Any
 
 from planner_reactor.errors import RefusedError
@@ -60,13 +60,15 @@ class Reactor:
         self.failed: dict[str, float] = {}  # assumptions that have failed, and since when
         self.counts: Counter[str] = Counter(received=0, applied=0, refused=0, timed_out=0, changes_applied=0)
         self.stub_triggers = 0
+        self._signatures = {**BUILT_IN, **self.host.signatures}
+        self._laws_due = False
         self._versions: dict[str, int] = {}
         self._rests_on: dict[str, tuple[str, ...]] = {}
         self._version_of_label: dict[int, int] = {}
         self._loaded: dict[int, Reaction] = {}
         self._highest_label = -1
         self.laws = Laws(self)
-        self._watches = {
+        self._watches: dict[str, Callable[..., None]] = {
             "added": self._reaction_added,
             "removed": self._reaction_removed,
             "ended": self._instance_ended,
@@ -127,7 +129,7 @@ class Reactor:
         """Seconds in which the adaptation will have been applied (R §5.5, *bounded*)."""
         bounds = Bounds(
             Program(r.schema for r in self.reactions.values()),
-            BUILT_IN | dict(self.host.signatures),
+            self._signatures,
             {name: process.limit for name, process in self.host.processes.items()},
             self._bodies_serving,
         )
@@ -145,8 +147,7 @@ class Reactor:
             seen=self.transactions.seen,
             epoch=self.transactions.epoch,
             used_labels=range(self._highest_label + 1),
-            program=Program(r.schema for r in self._loaded.values()),
-            signatures=BUILT_IN | dict(self.host.signatures),
+            signatures=self._signatures,
             functions=self.host.functions,
         )
 
@@ -163,8 +164,7 @@ class Reactor:
             self.perceive("adaptation_timed_out", str(adaptation.id), cause="TIMEOUT")
             return
         self.counts["applied"] += 1
-        previous = [(c.situation, c.base, self._versions[c.situation]) for c in adaptation.changes]
-        self.laws.applied(adaptation.id, adaptation.epoch, previous)
+        self.laws.applied(transaction, dict(self._versions))
         for change in adaptation.changes:
             self._versions[change.situation] += 1
             self._rests_on[change.situation] = change.assumptions
@@ -191,8 +191,19 @@ class Reactor:
         """One change of the situations or guards: traced, watched by the laws, and acted on."""
         self.trace.record(kind, **fields)
         self.laws.happened(kind, fields)
+        self.settle_laws()
         if (watch := self._watches.get(kind)) is not None:
             watch(**fields)
+
+    def settle_laws(self) -> None:
+        """Ask the laws as soon as the present step is over."""
+        if not self._laws_due:
+            self._laws_due = True
+            self.scheduler.soon(self._ask_laws)
+
+    def _ask_laws(self) -> None:
+        self._laws_due = False
+        self.laws.check()
 
     def perceive(
         self,

@@ -25,7 +25,6 @@ from planner_reactor.reactor.instances import (
 )
 from planner_reactor.reactor.wakers import Waker
 
-
 Notice: TypeAlias = Callable[..., None]
 
 
@@ -212,8 +211,9 @@ class Situations:
             return False
         if instance.withdrawn and ok:
             self._notice("success_withdrawn", situation=name, instance=instance.number)
+        ok = ok and not instance.withdrawn
         cause = "withdrawn" if instance.withdrawn else "stub" if instance.stub else "failed"
-        self._end([(instance, ok and not instance.withdrawn, cause)])
+        self._end([(instance, ok, cause)])
         self._complete(instance)
         return True
 
@@ -226,7 +226,8 @@ class Situations:
                 continue
             instance.status = "ok" if ok else "ab"
             instance.cause = "" if ok else cause
-            self._notice("ended", situation=instance.situation.name, instance=instance.number, ok=ok, cause=cause)
+            self._notice("ended", situation=instance.situation.name, instance=instance.number, ok=ok,
+                         cause=instance.cause)  # fmt: skip
             self._fail_queued(instance)
             ending += [(child, False, "cancelled") for child in instance.children.values()]
             done.append(instance)

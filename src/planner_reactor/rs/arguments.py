@@ -60,7 +60,7 @@ def _listed(token: Cursor, closing: str, read: Callable[[Cursor], Element]) -> t
 
 
 def _head(token: Cursor) -> Head:
-    if token.is_name():
+    if token.kind == "name":
         return Parameter(token.advance())
     if token.kind in ("number", "text") or token.text == "-":
         constant = _operand(token)
@@ -70,7 +70,7 @@ def _head(token: Cursor) -> Head:
 
 
 def _result(token: Cursor) -> str:
-    if token.is_name():
+    if token.kind == "name":
         return token.advance()
     message = f"{token.found()} where the name of a result should stand"
     raise token.error("syntax", message, "results are names: <x, y>")
@@ -78,25 +78,23 @@ def _result(token: Cursor) -> str:
 
 def _expression(token: Cursor, floor: int = 0) -> Expression:
     """An expression composed by operators stronger than `floor`."""
-    token.enter()
     left = _operand(token)
     deeper = 0
     while (operator := ARITHMETIC.get(token.text)) is not None and operator.strength > floor:
+        token.enter()  # `left` becomes deeper with every round
+        deeper += 1
         token.advance()
         left = Operation(operator.sign, left, _expression(token, operator.strength))
-        token.enter()  # `left` has become deeper
-        deeper += 1
         following = ARITHMETIC.get(token.text)
         if operator.joining == "once" and following is not None and following.joining == "once":
             hint = "a comparison is true or false, not a number: put parentheses around it"
             raise token.error("syntax", f"`{operator.sign}` and `{following.sign}` do not chain", hint)
-    for _ in range(deeper + 1):
-        token.leave()
+    token.leave(deeper)
     return left
 
 
 def _operand(token: Cursor) -> Expression:
-    if token.is_name():
+    if token.kind == "name":
         return _name_or_application(token)
     if token.kind == "number":
         return Number(_number(token))
@@ -106,9 +104,11 @@ def _operand(token: Cursor) -> Expression:
         return _negative(token)
     if token.text == "(":
         opened = token.at
+        token.enter()
         token.advance()
         inner = _expression(token)
         token.close(")", opened)
+        token.leave()
         return inner
     hint = 'expected a number, a name, a "string", f(…), `-` or `(`'
     raise token.error("syntax", f"{token.found()} where an argument should stand", hint)
@@ -118,7 +118,10 @@ def _name_or_application(token: Cursor) -> Expression:
     place = token.place()
     name = token.advance()
     if token.text == "(":
-        return Apply(name, _listed(token, ")", _expression), place)
+        token.enter()  # beside that of the list: an application takes four calls of Python
+        arguments = _listed(token, ")", _expression)
+        token.leave()
+        return Apply(name, arguments, place)
     if token.text == "[":
         hint = f"a function takes its arguments in parentheses: {name}(…)"
         raise token.error("syntax", f"`[` after {name} in an argument", hint)

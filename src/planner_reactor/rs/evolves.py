@@ -135,10 +135,12 @@ def begin(process: Process, scope: Bindings, world: World, depth: int = 0) -> Ru
     match process:
         case Call():
             return _begin_call(process, scope, world, depth)
-        case Seq((first, *rest)):
-            return Chain(";", _begin_left(first, scope, world, depth), seq(*rest), _needed(process, scope))
-        case Cond((first, *rest)):
-            return Chain(":", _begin_left(first, scope, world, depth), cond(*rest), _needed(process, scope))
+        case Seq(parts):
+            first = _begin_left(parts[0], scope, world, depth)
+            return Chain(";", first, seq(*parts[1:]), _needed(process, scope))
+        case Cond(parts):
+            first = _begin_left(parts[0], scope, world, depth)
+            return Chain(":", first, cond(*parts[1:]), _needed(process, scope))
         case Par(parts):
             return Group("|", tuple(begin(p, scope, world, depth) for p in parts))
         case All(parts):
@@ -151,7 +153,7 @@ def begin(process: Process, scope: Bindings, world: World, depth: int = 0) -> Ru
             return Testing(_begin_left(condition, scope, world, depth), process, _needed(process, scope))
         case Spawn(condition, _):
             return Spawning(_begin_left(condition, scope, world, depth), process, _needed(process, scope))
-        case If(test, _, _):
+        case If(test):
             return Deciding(begin(test, scope, world, depth), process, _needed(process, scope))
 
 

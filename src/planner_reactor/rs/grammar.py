@@ -70,8 +70,6 @@ EXPRESSION_OPERATORS = (
 )
 PREFIX_MINUS = 4
 
-KEYWORDS = frozenset({"if", "then", "else"})
-
 INFIX = MappingProxyType({o.sign: o for o in PROCESS_OPERATORS if o.joining != "prefix"})
 ARITHMETIC = MappingProxyType({o.sign: o for o in EXPRESSION_OPERATORS})
 OPERATOR_OF = MappingProxyType({o.term: o for o in PROCESS_OPERATORS})
@@ -80,7 +78,8 @@ OPERATOR_OF = MappingProxyType({o.term: o for o in PROCESS_OPERATORS})
 TOKEN = re.compile(
     r"""
     (?: \s++ | //[^\n]*+ )*+
-    (?: (?P<name>    [^\W\d] \w* )
+    (?: (?P<word>    (?: if | then | else ) \b )
+      | (?P<name>    [^\W\d] \w* )
       | (?P<number>  [0-9]+ (?: \.[0-9]+ )? (?: [eE][+-]?[0-9]+ )? (?! [\w.] ) )
       | (?P<text>    " (?: [^"\\\n] | \\. )* " )
       | (?P<sign>    :; | :: | == | /= | <= | >= | [][()<>,=|&;:\#~+*/-] )
@@ -90,7 +89,7 @@ TOKEN = re.compile(
     """,
     re.VERBOSE,
 )
-"""One token, after blanks and comments. Strings are written as in JSON."""
+"""One token, after blanks and comments; a word is reserved. Strings are written as in JSON."""
 
 DEFINITION = re.compile(
     r"""

@@ -153,7 +153,7 @@ def _greater(a: Value, b: Value) -> bool:
 def equal(a: Value, b: Value, tolerance: Value = 1e-9) -> bool:
     """Equal, within a tolerance where both are numbers."""
     if _is_number(a) and _is_number(b) and _is_number(tolerance):
-        return abs(a - b) <= tolerance  # type: ignore[operator]
+        return bool(abs(a - b) <= tolerance)  # type: ignore[operator]
     return a == b
 
 

@@ -116,7 +116,7 @@ class _Parser:
     def _definition(self) -> Schema:
         token = self._token
         place = token.place()
-        if not token.is_name():
+        if token.kind != "name":
             found = token.found()
             raise token.error("syntax", f"{found} where a definition should begin", "expected Name[…]<…> = P")
         name = token.advance()
@@ -127,29 +127,25 @@ class _Parser:
             raise token.error("syntax", f"expected `=` after {name}, found {token.found()}", hint)
         token.advance()
         body = self._process()
-        if token.kind != "end" and not token.is_name():
+        if token.kind != "end" and token.kind != "name":
             raise self._left_over()
         return Schema(name, head, results, body, place)
 
     def _process(self, floor: int = 0) -> Process:
         """A process composed by operators stronger than `floor`."""
         token = self._token
-        token.enter()
         if floor == 0 and token.text == "if":
-            left: Process = self._if()
-        else:
-            left = self._operand()
-            operator = INFIX.get(token.text)
-            while operator is not None and operator.strength > floor:
-                left = self._join(left, operator)
-                operator = INFIX.get(token.text)
-        token.leave()
+            return self._if()
+        left = self._operand()
+        while (operator := INFIX.get(token.text)) is not None and operator.strength > floor:
+            left = self._join(left, operator)
         return left
 
     def _join(self, left: Process, operator: Operator) -> Process:
         """`left`, and what the operator joins to it."""
         token = self._token
         at = token.at
+        token.enter()
         parts = [left]
         mixes = self._mixes(operator, left)
         while token.text == operator.sign and (len(parts) == 1 or operator.joining != "once"):
@@ -161,18 +157,21 @@ class _Parser:
             raise self._ungrouped(operator, following)
         if mixes:
             self._warnings.append(self._source.finding(at, "warning", "mixed-operators", *MIXED))
+        token.leave()
         self._joined = joined = BUILD[operator.sign](parts)
         return joined
 
     def _operand(self) -> Process:
         token = self._token
-        if token.is_name():
+        if token.kind == "name":
             return self._call()
         if token.text == "(":
             opened = token.at
+            token.enter()
             token.advance()
             inner = self._process()
             token.close(")", opened)
+            token.leave()
             self._joined = None
             return inner
         if token.text == "~":
@@ -201,6 +200,7 @@ class _Parser:
 
     def _if(self) -> Process:
         token = self._token
+        token.enter()
         parts = []
         for word in ("if", "then", "else"):
             if token.text != word:
@@ -208,6 +208,7 @@ class _Parser:
                 raise token.error("syntax", message, "the form is if P then P else P")
             token.advance()
             parts.append(self._process())
+        token.leave()
         return If(*parts)
 
     def _mixes(self, operator: Operator, part: Process) -> bool:

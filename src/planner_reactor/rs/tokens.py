@@ -7,10 +7,13 @@ business.
 
 from __future__ import annotations
 
+import re
+from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import islice
 
 from planner_reactor.errors import Place, RSError
-from planner_reactor.rs.grammar import DEFINITION, KEYWORDS, TOKEN
+from planner_reactor.rs.grammar import DEFINITION, TOKEN
 from planner_reactor.rs.source import Source
 
 LONGEST_QUOTE = 40
@@ -50,10 +53,10 @@ _HINTS = {
 
 
 class Cursor:
-    """The token to be read next: its `kind` ("name", "number", "text", "sign", "end"), `text` and offset
-    `at`."""
+    """The token to be read next: its `kind` ("name", "number", "text", "sign", "word", "end"), its `text`, and
+    where it begins, `at`."""
 
-    __slots__ = ("_left", "_matches", "_nesting", "at", "budgets", "kind", "source", "text")
+    __slots__ = ("_matches", "_nesting", "at", "budgets", "kind", "source", "text")
 
     def __init__(self, source: Source, budgets: Budgets) -> None:
         self.source = source
@@ -63,26 +66,21 @@ class Cursor:
         self._nesting = 0
         if len(source.text) > budgets.characters:
             raise self.error("too-long", f"the text is longer than {budgets.characters} characters")
-        self._left = budgets.tokens
-        self._matches = TOKEN.finditer(source.text)
+        self._matches = self._from(0)
         self.advance()
 
     def advance(self) -> str:
         """Goes on to the next token; returns the text of the one left behind."""
         behind = self.text
-        match = next(self._matches)
+        match = next(self._matches, None)
+        if match is None:
+            raise self.error("too-many-tokens", f"the text has more than {self.budgets.tokens} tokens")
         self.kind = kind = match.lastgroup or "end"
         self.text = match[kind]
         self.at = match.start(kind)
-        self._left -= 1
         if kind == "wrong":
             raise self._wrong_character()
-        if self._left < 0:
-            raise self.error("too-many-tokens", f"the text has more than {self.budgets.tokens} tokens")
         return behind
-
-    def is_name(self) -> bool:
-        return self.kind == "name" and self.text not in KEYWORDS
 
     def split(self) -> None:
         """Takes the first character off the token: `>=` after the results of a head is `>` and `=`."""
@@ -92,7 +90,7 @@ class Cursor:
     def skip_to_definition(self) -> None:
         """Goes on to the next line that begins a definition, or to the end."""
         found = DEFINITION.search(self.source.text, self.at)
-        self._matches = TOKEN.finditer(self.source.text, found.start() if found else len(self.source.text))
+        self._matches = self._from(found.start() if found else len(self.source.text))
         self._nesting = 0
         self.advance()
 
@@ -102,8 +100,8 @@ class Cursor:
         if self._nesting > self.budgets.nesting:
             raise self.error("too-deep", f"more than {self.budgets.nesting} levels of nesting", TOO_DEEP)
 
-    def leave(self) -> None:
-        self._nesting -= 1
+    def leave(self, levels: int = 1) -> None:
+        self._nesting -= levels
 
     def close(self, sign: str, opened: int) -> None:
         """Reads the `sign` that closes what was opened at this offset."""
@@ -128,6 +126,9 @@ class Cursor:
     def error(self, code: str, message: str, hint: str = "") -> RSError:
         """An error at this token, to be raised."""
         return RSError([self.source.finding(self.at, "error", code, message, hint)])
+
+    def _from(self, offset: int) -> Iterator[re.Match[str]]:
+        return islice(TOKEN.finditer(self.source.text, offset), self.budgets.tokens)
 
     def _wrong_character(self) -> RSError:
         if self.text.isdigit():
