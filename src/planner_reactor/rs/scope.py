@@ -41,6 +41,7 @@ from planner_reactor.rs.terms import (
 Names = Mapping[str, Place | None]
 """Names in scope, each with the place that binds it."""
 
+NO_NAMES: Names = {}
 NOWHERE = Place(1, 1)
 
 
@@ -100,8 +101,11 @@ class _Resolver:
             raise _TooDeep
         match process:
             case Call(name, arguments, results, place):
+                bound = self._results(results, place, scope) if results else NO_NAMES
+                if not arguments:
+                    return process, bound
                 resolved = tuple([self._expression(a, scope, depth + 1) for a in arguments])
-                return Call(name, resolved, results, place), self._results(results, place, scope)
+                return Call(name, resolved, results, place), bound
             case Seq(parts) | Cond(parts):
                 sequence, bound = self._sequence(parts, scope, depth)
                 return type(process)(sequence), bound
@@ -126,11 +130,11 @@ class _Resolver:
         self, parts: tuple[Process, ...], scope: Names, depth: int
     ) -> tuple[tuple[Process, ...], Names]:
         resolved: list[Process] = []
-        bound: Names = {}
+        bound = NO_NAMES
         for part in parts:
             part, names = self.process(part, {**scope, **bound} if bound else scope, depth + 1)
             resolved.append(part)
-            bound = {**bound, **names}
+            bound = {**bound, **names} if names else bound
         return tuple(resolved), bound
 
     def _siblings(
@@ -163,8 +167,8 @@ class _Resolver:
         if depth > self._deepest:
             raise _TooDeep
         match expression:
-            case Symbol(name, place) if name in scope:
-                return Variable(name, place)
+            case Symbol(name, place):
+                return Variable(name, place) if name in scope else expression
             case Negative(operand):
                 return Negative(self._expression(operand, scope, depth + 1))
             case Operation(sign, left, right):
