@@ -26,10 +26,10 @@ def test_processes_begun_together_are_served_in_the_kits_order() -> None:
 def test_in_the_fixed_order_a_starved_part_keeps_the_later_ones_back() -> None:
     rig = Rig()
     tray = rig.tray()
-    rig.world.strike("starved_kind", part="motor", duration_s=100.0)
-    rig.wait(60.0)
+    rig.world.strike("starved_kind", part="motor", duration_s=75.0)
+    rig.wait(36.0)  # the last one has passed
     kinds = [rig.begin("FindGetInsert", kind, tray) for kind in ("cap", "motor")]
-    rig.wait(14.0)
+    rig.wait(13.0)
     assert (placed(rig), rig.holds("AO")) == ([], None)
     rig.wait(6.0)
     assert rig.holds("AO") is False

@@ -112,9 +112,7 @@ class Fussy:
 
 def test_a_fault_list_serves_any_world() -> None:
     world, scheduler = Fussy(), Scheduler(VirtualClock())
-    schedule = FaultSchedule(
-        faults_from('[[fault]]\nat = 2\nkind = "crack"\ndepth = 3', world), world, scheduler
-    )
+    schedule = FaultSchedule(faults_from('[[fault]]\nat = 2\nkind = "crack"\ndepth = 3', world), world, scheduler)
     scheduler.run(until=10.0)
     assert (world.asked, schedule.unstruck()) == (3, ())
     with pytest.raises(InputError, match="did you mean depth"):

@@ -43,9 +43,7 @@ def test_arrivals_are_stochastic_with_the_mean_that_the_kit_says() -> None:
     rig.wait(3000.0)
     assert rig.trace is not None
     for kind in SERVOMOTOR.parts:
-        times = [
-            e.time for e in rig.trace.of("part_arrived") if e.data["part_kind"] == kind.kind and e.time > 0
-        ]
+        times = [e.time for e in rig.trace.of("part_arrived") if e.data["part_kind"] == kind.kind and e.time > 0]
         gaps = [b - a for a, b in pairwise(times)]
         assert statistics.mean(gaps) == pytest.approx(kind.interval_s, rel=0.05)
         assert statistics.stdev(gaps) > 0.1 * kind.interval_s

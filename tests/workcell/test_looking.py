@@ -13,8 +13,7 @@ def test_choose_names_the_wanted_variant_while_it_is_in_sight() -> None:
 
 def test_choose_names_a_substitute_only_when_the_wanted_variant_is_starved() -> None:
     kit = kit_from(
-        '[[part]]\nkind = "cap"\nvariants = ["cap_a", "cap_b", "cap_c"]\n'
-        'substitutes = ["cap_b"]\nmix = { cap_b = 1.0 }'
+        '[[part]]\nkind = "cap"\nvariants = ["cap_a", "cap_b", "cap_c"]\nsubstitutes = ["cap_b"]\nmix = { cap_b = 1.0 }'
     )
     rig = Rig(kit=kit)
     assert rig.run("Choose", "cap").result == "cap_a"

@@ -126,3 +126,28 @@ def test_only_motion_is_reported_by_the_process_itself() -> None:
     for assumption in ASSUMPTIONS:
         rig.cell.evidence.against(assumption, "test")
     assert rig.reports == ["AM"]
+
+
+def test_a_kind_that_stays_away_is_noticed_at_the_entrance_even_if_nobody_needs_it() -> None:
+    rig = Rig()
+    rig.world.strike("starved_kind", part="body")
+    rig.wait(100.0)
+    assert rig.holds("AO") is False
+
+
+def test_what_could_not_be_seen_in_the_dark_is_not_taken_for_starvation() -> None:
+    rig = Rig()
+    rig.world.strike("camera_dark", duration_s=200.0)
+    rig.wait(300.0)
+    assert rig.holds("AO") is None
+
+
+def test_a_part_that_came_with_the_tray_and_is_gone_is_evidence_against_parts_staying() -> None:
+    rig = Rig()
+    rig.world.strike("filled_tray", part="cap")
+    tray = rig.tray()
+    rig.world.strike("part_removed_from_tray")
+    assert rig.holds("ACT") is False
+    assert rig.run("SlotVacant", tray, "cap").outcome == "stop"
+    rig.wait(200.0)
+    assert rig.holds("ACT") is None

@@ -24,9 +24,7 @@ def test_processes_and_monitors_never_touch_the_truth(name: str) -> None:
     text = (Path(workcell.__file__).parent / f"{name}.py").read_text(encoding="utf-8")
     tree = ast.parse(text)
     imported = {
-        node.module.rsplit(".", 1)[-1]
-        for node in ast.walk(tree)
-        if isinstance(node, ast.ImportFrom) and node.module
+        node.module.rsplit(".", 1)[-1] for node in ast.walk(tree) if isinstance(node, ast.ImportFrom) and node.module
     }
     assert imported.isdisjoint(TRUTH)
     reached = {node.attr for node in ast.walk(tree) if isinstance(node, ast.Attribute)}

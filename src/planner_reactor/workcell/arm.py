@@ -231,11 +231,15 @@ class Arm:
     def set_down_tray(self, pose: tuple[float, float]) -> bool:
         return self._plant.set_down_tray(pose)
 
-    def put_back(self) -> bool:
-        return self._plant.put_back()
+    def put_back(self) -> None:
+        """Put back what is held; an empty gripper is noticed."""
+        if not self._plant.put_back():
+            self.slipped()
 
-    def discard(self, why: str) -> bool:
-        return self._plant.discard(why)
+    def discard(self, why: str) -> None:
+        """Drop what is held into the reject bin; an empty gripper is noticed."""
+        if not self._plant.discard(why):
+            self.slipped()
 
     def hand_over(self) -> Verdict | None:
         return self._plant.hand_over()
@@ -289,11 +293,14 @@ class Arm:
             self._reconcile = self._scheduler.call_after(self._calibration.reconcile_s, self._put_away)
 
     def _put_away(self) -> None:
+        if not self.gripped:
+            self._reconcile = None
+            self.feel_empty()
+            self._arrange()
+            return
         self._numbers += 1
         self.owner = Turn("put away", DELIVER, self._numbers, self._scheduler.now, ready=True)
-        self._reconcile = self._scheduler.call_after(
-            self.go("put away", self._calibration.put_back_s), self._put
-        )
+        self._reconcile = self._scheduler.call_after(self.go("put away", self._calibration.put_back_s), self._put)
 
     def _put(self) -> None:
         """Put away what nobody took up: a tray on which work was done stands again where it stood."""
@@ -304,7 +311,7 @@ class Arm:
         if tray is not None and tray.place >= 0 and self._plant.set_down_tray(tray.pose):
             tray.state, memory.held = "area", ""
         else:
-            self._plant.put_back()
+            self.put_back()
             memory.let_go()
         self.owner = None
         self._arrange()

@@ -149,10 +149,7 @@ class Belt:
         """Lay a part on the belt, in the next lane."""
         self._lane = (self._lane + 1) % len(self._calibration.lanes)
         part.u = travelled - self.speed * self._scheduler.now
-        part.y = (
-            self._calibration.lanes[self._lane]
-            + self._calibration.lane_noise * self.feeders[part.kind].across()
-        )
+        part.y = self._calibration.lanes[self._lane] + self._calibration.lane_noise * self.feeders[part.kind].across()
         self.parts[part.kind][part.number] = part
         self._time_leaving(part)
 

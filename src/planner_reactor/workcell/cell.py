@@ -25,6 +25,8 @@ from planner_reactor.workcell.sensors import Glimpse, Sensors
 T = TypeVar("T")
 Steps: TypeAlias = Generator[Any, Any, T]
 TRAY = "tray"
+AWAY = 4.0
+"""Mean intervals without a part of its kind after which a feeder is thought to have stopped."""
 
 
 class Cell:
@@ -44,9 +46,12 @@ class Cell:
         self.reserve_downstream = plant.downstream.reserve
         self.wait_s = self.calibration.wait_s(len(self.kit.kinds))
         self.reach_s = self.calibration.look_s + self.calibration.reach_s + self.calibration.close_s
+        self._last_came = dict.fromkeys(self.kit.kinds, self.scheduler.now)
+        self._too_long = {part.kind: AWAY * part.interval_s for part in self.kit.parts}
         self._turn_s = self.calibration.pick_and_place_s + self.calibration.test_s
         self.arm.slipped = partial(self.evidence.note, "gripper")
         self.sensors.noticed = self._noticed
+        self.sensors.blind = self._blind
         plant.downstream.answer = self._answered
         plant.downstream.told = self._ready_line
 
@@ -122,9 +127,22 @@ class Cell:
         now = self.scheduler.now
         self.memory.prune(glimpse.kind, now)
         record = self.memory.see(glimpse, now)
+        self._came(glimpse.kind, now)
         self._judge_variant(record, self.kit.by_kind[glimpse.kind].wanted)
         self.arm.noticed(glimpse.kind)
         self.arrivals[glimpse.kind].fire()
+
+    def _came(self, kind: str, now: float) -> None:
+        """One kind came: does another stay away far longer than the feeders' mean interval says?"""
+        self._last_came[kind] = now
+        for other, when in self._last_came.items():
+            if now - when > self._too_long[other]:
+                self.evidence.against("AO", f"{other} stays away while {kind} comes")
+
+    def _blind(self) -> None:
+        """Something came, and there was no picture of it: nothing is known of who came last."""
+        self.evidence.note("camera")
+        self._last_came = dict.fromkeys(self.kit.kinds, self.scheduler.now)
 
     def _judge_variant(self, record: PartRecord, wanted: str) -> None:
         if len(record.votes) == 1 and wanted in record.votes:

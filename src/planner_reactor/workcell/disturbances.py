@@ -132,9 +132,7 @@ def _part_removed_from_tray(plant: Plant, mark: int, p: Parameters) -> bool:
 def _part_added_to_tray(plant: Plant, mark: int, p: Parameters) -> bool:
     """Somebody else fills a slot."""
     for tray in _reachable(plant):
-        vacant = [
-            kind for kind in reversed(plant.kit.order) if kind not in tray.slots and p["part"] in ("", kind)
-        ]
+        vacant = [kind for kind in reversed(plant.kit.order) if kind not in tray.slots and p["part"] in ("", kind)]
         if vacant:
             plant.add_to_tray(tray, _new_part(plant, vacant[0], mark, p["good"]), "part_added_to_tray")
             return True
@@ -211,9 +209,7 @@ def _at_gripper(plant: Plant, p: Parameters) -> Part | None:
             return None
         part = plant.belt.under(*plant.closing, plant.calibration.grasp_tolerance)
         return part if part is not None and p["part"] in ("", part.kind) else None
-    riding = [
-        part for parts in plant.belt.parts.values() for part in parts.values() if p["part"] in ("", part.kind)
-    ]
+    riding = [part for parts in plant.belt.parts.values() for part in parts.values() if p["part"] in ("", part.kind)]
     return min(riding, key=lambda part: part.u, default=None)
 
 

@@ -18,8 +18,7 @@ def contents_rule(kit: KitSpec) -> str:
     """The rule `… => Contents(t) @ i` in the notation of `.itl`."""
     names = [f"x{n}" for n in range(1, len(kit.order) + 1)]
     terms = " and ".join(
-        f"Instance({kind},{name}) @ i and In(t,{name}) @ i"
-        for kind, name in zip(kit.order, names, strict=True)
+        f"Instance({kind},{name}) @ i and In(t,{name}) @ i" for kind, name in zip(kit.order, names, strict=True)
     )
     return f"atp_rule forall t, {', '.join(names)}, i: {terms} => Contents(t) @ i;"
 

@@ -93,9 +93,7 @@ def _rows(source: TomlText, world: Strikable, beside: tuple[str, ...] = ()) -> t
     rows = source.values.get("fault", [])
     if not isinstance(rows, list) or not all(isinstance(row, dict) for row in rows):
         raise source.error("'fault' is no list of tables", key="fault", hint="expected [[fault]] tables")
-    return tuple(
-        sorted((_row(source, n, row, world) for n, row in enumerate(rows)), key=lambda fault: fault.at)
-    )
+    return tuple(sorted((_row(source, n, row, world) for n, row in enumerate(rows)), key=lambda fault: fault.at))
 
 
 def _row(source: TomlText, index: int, row: Mapping[str, Any], world: Strikable) -> Fault:
@@ -112,9 +110,7 @@ def _row(source: TomlText, index: int, row: Mapping[str, Any], world: Strikable)
     kind = row.get("kind")
     if not isinstance(kind, str) or kind not in world.faults:
         shown = f"unknown fault {kind!r}" if "kind" in row else "a fault without 'kind'"
-        raise wrong(
-            "kind", shown, nearest(str(kind), world.faults) or f"expected one of: {', '.join(world.faults)}"
-        )
+        raise wrong("kind", shown, nearest(str(kind), world.faults) or f"expected one of: {', '.join(world.faults)}")
     given = {key: value for key, value in row.items() if key not in ("at", "kind")}
     refused = _refusal(world, kind, given)
     if refused is not None:

@@ -51,9 +51,7 @@ def host(
     cell.evidence.report = lambda assumption, text: made.report(assumption, False, text)
     for name, routine, results, high in processes(cell):
         outcomes = ("abort",) if name == "Track" else ("stop", "abort")
-        made.process(results=results, window=(0.0, high), outcomes=outcomes, name=name)(
-            _paced(routine, scheduler)
-        )
+        made.process(results=results, window=(0.0, high), outcomes=outcomes, name=name)(_paced(routine, scheduler))
     monitors = Monitors(cell)
     for assumption in ASSUMPTIONS:
         made.assumption(assumption)(partial(monitors.holds, assumption))

@@ -141,9 +141,7 @@ def _section(source: TomlText, name: str) -> Mapping[str, object]:
     return section
 
 
-def _part(
-    source: TomlText, index: int, row: Mapping[str, object], interval: float, quality: float
-) -> PartKind:
+def _part(source: TomlText, index: int, row: Mapping[str, object], interval: float, quality: float) -> PartKind:
     fields = Fields(source, "part", index, row, _PART_KEYS)
     fields.refuse_unknown()
     kind: str = fields.take("kind", "")
@@ -152,9 +150,7 @@ def _part(
         raise fields.error(shown, "kind", "expected letters, digits and _, not a name of the cell's own")
     variants = fields.names("variants", (kind,))
     if not variants:
-        raise fields.error(
-            f"'{kind}' has no variant", "variants", "expected at least one name, or no such key"
-        )
+        raise fields.error(f"'{kind}' has no variant", "variants", "expected at least one name, or no such key")
     return PartKind(
         kind=kind,
         variants=variants,

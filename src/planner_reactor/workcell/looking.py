@@ -115,8 +115,7 @@ class Looking:
             return
         if kind not in tray.placed:
             tray.noted.add(kind)
-            whose = "ACP" if kind in tray.seen_vacant else "AF"
-            cell.evidence.against(whose, f"slot {kind} of {t} is filled already")
+            cell.evidence.against(tray.blames(kind), f"slot {kind} of {t} is filled already")
         raise Aborted(f"slot {kind} of {t} is filled")
 
     def verify(self, t: str) -> Steps[None]:
@@ -178,8 +177,8 @@ class Looking:
 
     def _note_missing(self, tray: TrayRecord, kind: str) -> None:
         """A slot is vacant; if a part had been put there, it has been taken away."""
-        handle = tray.placed.pop(kind, "")
-        self._cell.memory.parts.pop(handle, None)
-        if handle or kind in tray.noted:
+        if tray.expects(kind):
             self._cell.evidence.against("ACT", f"{kind} is missing from {tray.handle}")
+        self._cell.memory.parts.pop(tray.placed.pop(kind, ""), None)
         tray.noted.discard(kind)
+        tray.came_filled.discard(kind)

@@ -54,8 +54,16 @@ class TrayRecord:
     place: int = -1
     placed: dict[str, str] = field(default_factory=dict)  # slot → the part that we put there
     noted: set[str] = field(default_factory=set)  # slots that a process found filled by others
-    seen_vacant: set[str] = field(default_factory=set)
+    came_filled: set[str] = field(default_factory=set)  # slots seen filled when it was taken from the stack
     tested: bool = False
+
+    def blames(self, slot: str) -> str:
+        """A slot is filled, and not by us: the assumption that this speaks against."""
+        return "AF" if slot in self.came_filled else "ACP"
+
+    def expects(self, slot: str) -> bool:
+        """Should something be in the slot, by all that was done and seen?"""
+        return slot in self.placed or slot in self.noted or slot in self.came_filled
 
     def done(self, slot: str) -> bool:
         """Is the slot filled, as far as is known?"""
@@ -147,6 +155,11 @@ class Memory:
             self._on_belt[record.kind].remove(record)
         if self.held == record.handle:
             self.held = ""
+
+    def drop(self, record: PartRecord) -> None:
+        """As `forget`, whether or not it is still remembered."""
+        if record.handle in self.parts:
+            self.forget(record)
 
     def grip(self, record: PartRecord, kind: str, variant: str) -> None:
         """It is in the gripper, and the palm camera says what it is."""

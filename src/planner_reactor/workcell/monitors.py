@@ -51,7 +51,7 @@ class Monitors:
             evidence.supports("ADT")
         else:
             evidence.against("ADT", f"{tray.handle} is not where it was put")
-        missing = [slot for slot in tray.placed if slot not in filled]
+        missing = [slot for slot in self._cell.kit.kinds if tray.expects(slot) and slot not in filled]
         strange = [slot for slot in filled if slot not in tray.placed and slot not in tray.noted]
         if missing:
             evidence.against("ACT", f"{missing[0]} is missing from {tray.handle}")
@@ -61,5 +61,4 @@ class Monitors:
             evidence.supports("ACP")
             return
         for slot in strange:
-            whose = "ACP" if slot in tray.seen_vacant else "AF"
-            evidence.against(whose, f"slot {slot} of {tray.handle} was filled by somebody else")
+            evidence.against(tray.blames(slot), f"slot {slot} of {tray.handle} was filled by somebody else")

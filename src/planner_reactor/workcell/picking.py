@@ -47,7 +47,8 @@ class Picking:
             record = yield from self._choose(turn, wanted, deadline)
             yield cell.arm.go("reach", cell.calibration.reach_s + cell.calibration.close_s)
             if not cell.arm.close_on_part(record.u, record.y):
-                self._lost(record)
+                self._missed(record)
+                cell.memory.drop(record)
                 raise Aborted(f"no {record.kind} where one was seen")
             if self._is(record, wanted):
                 return record.handle
@@ -102,7 +103,7 @@ class Picking:
         try:
             yield from cell.arm.wait_for(turn, cell.scheduler.now + cell.wait_s)
             if not cell.memory.rides(record, cell.scheduler.now + cell.reach_s):
-                self._lost(record)
+                cell.memory.drop(record)
                 raise Aborted(f"{x} has left the belt before its turn came")
             yield cell.arm.go("reach", cell.calibration.reach_s + cell.calibration.close_s)
             yield from self._close_following(record)
@@ -177,18 +178,17 @@ class Picking:
                 yield cell.arm.go("put back", cell.calibration.put_back_s)
                 self.put_down()
                 raise Aborted(f"{record.handle} is no {record.kind}")
+            self._missed(record)
             if follower is None:
                 break
-        self._lost(record)
+        cell.memory.drop(record)
         raise Aborted(f"{record.handle} is gone")
 
-    def _lost(self, record: PartRecord) -> None:
-        """A part is not where it was seen; evidence, unless it had to leave with the belt."""
+    def _missed(self, record: PartRecord) -> None:
+        """The gripper closed on nothing: evidence of motion, unless the part had to leave with the belt."""
         cell = self._cell
-        if record.state == "belt" and cell.memory.rides(record, cell.scheduler.now + cell.reach_s):
+        if cell.memory.rides(record, cell.scheduler.now):
             cell.evidence.against("AM", f"no {record.kind} where one was seen")
-        if record.handle in cell.memory.parts:
-            cell.memory.forget(record)
 
     def _has_moved(self, record: PartRecord, pose: tuple[float, float]) -> bool:
         tolerance = self._cell.calibration.seen_tolerance
@@ -262,7 +262,7 @@ class Picking:
         """The palm camera reads the tag, and sees whether the tray is empty."""
         cell = self._cell
         cell.memory.tray_taken(tray, view.tag)
-        tray.seen_vacant = set(cell.kit.kinds) - set(view.filled)
+        tray.came_filled = set(view.filled)
         if view.filled:
             cell.evidence.against("AF", f"a tray came with {len(view.filled)} filled slots")
         else:

@@ -167,8 +167,7 @@ class Placing:
                 cell.evidence.against("ADT", f"{tray.handle} is not where it was put")
             elif slot in view.filled:
                 tray.noted.add(slot)
-                whose = "ACP" if slot in tray.seen_vacant else "AF"
-                cell.evidence.against(whose, f"slot {slot} of {tray.handle} was filled already")
+                cell.evidence.against(tray.blames(slot), f"slot {slot} of {tray.handle} was filled already")
 
     def _grip(self, tray: TrayRecord) -> Steps[None]:
         """Take a standing tray by its handle, guided by the palm camera."""

@@ -42,9 +42,7 @@ class Plant:
         self.books = Books(trace)
         self.findings: list[Finding] = []
         self.numbers = count(1)
-        self.belt = Belt(
-            kit, calibration, scheduler, self.numbers, arrived=self._part_arrived, left=self._part_left
-        )
+        self.belt = Belt(kit, calibration, scheduler, self.numbers, arrived=self._part_arrived, left=self._part_left)
         self.downstream = Downstream(kit, calibration, scheduler)
         self.stack: list[Tray] = []
         self.area: dict[int, Tray] = {}
@@ -266,9 +264,7 @@ class Plant:
     def _order_trays(self) -> None:
         if len(self.stack) < self.calibration.refill_below and not self._refilling:
             self._refilling = True
-            self.scheduler.call_after(
-                self.calibration.refill_s, lambda: self._restock(self.calibration.refill_count)
-            )
+            self.scheduler.call_after(self.calibration.refill_s, lambda: self._restock(self.calibration.refill_count))
 
     def _let_faults_strike(self) -> None:
         waiting, self.attempts = self.attempts, []

@@ -25,9 +25,7 @@ class TomlText:
     text: str
     values: Mapping[str, Any]
 
-    def error(
-        self, message: str, *, table: str = "", index: int = 0, key: str = "", hint: str = ""
-    ) -> InputError:
+    def error(self, message: str, *, table: str = "", index: int = 0, key: str = "", hint: str = "") -> InputError:
         """An `InputError` at the key (or head) of the `index`-th table of that name."""
         line, column = self._place(table, index, key)
         shown = self.text.splitlines()[line - 1] if self.text else ""
@@ -101,9 +99,7 @@ class Fields:
         for key in self.values:
             if key not in self.known:
                 hint = nearest(key, self.known) or f"expected one of: {', '.join(self.known)}"
-                raise self.error(
-                    f"unknown key '{key}'" + (f" in [{self.table}]" if self.table else ""), key, hint
-                )
+                raise self.error(f"unknown key '{key}'" + (f" in [{self.table}]" if self.table else ""), key, hint)
 
     def take(self, key: str, default: Any, *, low: float | None = None, high: float | None = None) -> Any:
         """The value of `key`, of the default's type (an int serves as float), or the default; checked for
@@ -116,9 +112,7 @@ class Fields:
             expected = kind_name(default)
             raise self.error(f"'{key}' is {self.values[key]!r}", key, f"expected {expected}")
         if (low is not None and value < low) or (high is not None and value > high):
-            bounds = (
-                f"at least {low:g}" if high is None else f"from {low if low is not None else 0:g} to {high:g}"
-            )
+            bounds = f"at least {low:g}" if high is None else f"from {low if low is not None else 0:g} to {high:g}"
             raise self.error(f"'{key}' is {value!r}", key, f"expected {bounds}")
         return value
 
@@ -159,6 +153,4 @@ def typed(value: Any, like: Any) -> Any:
 
 def kind_name(like: Any) -> str:
     """How a person calls the type of a value."""
-    return {bool: "true or false", int: "a whole number", float: "a number", str: "a string"}.get(
-        type(like), "a table"
-    )
+    return {bool: "true or false", int: "a whole number", float: "a number", str: "a string"}.get(type(like), "a table")

@@ -65,10 +65,13 @@ class Follower:
 
 
 class Sensors:
-    """All sensors of one cell. `noticed` hears of each part that the entrance sees."""
+    """All sensors of one cell. `noticed` hears of each part that the entrance sees, `blind` of each that it
+    cannot.
+    """
 
     def __init__(self, plant: Plant) -> None:
         self.noticed: Callable[[Glimpse], None] = lambda glimpse: None
+        self.blind: Callable[[], None] = lambda: None
         self._plant = plant
         self._random = plant.scheduler.random("camera")
         self._test_random = plant.scheduler.random("test")
@@ -141,7 +144,10 @@ class Sensors:
 
     def _entered(self, part: Part) -> None:
         plant, draw = self._plant, self._random.random
-        if plant.dark or draw() < plant.calibration.miss:
+        if plant.dark:
+            self.blind()
+            return
+        if draw() < plant.calibration.miss:
             return
         error = plant.calibration.variant_error
         wrong = (draw() < error) + (draw() < error) + (draw() < error)

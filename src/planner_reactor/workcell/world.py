@@ -89,9 +89,7 @@ class World:
         if arm is not None:
             books = self.commands()
             if books["sent"] != books["done"] + books["abandoned"] + books["live"]:
-                self._find(
-                    "commands", f"sent {books['sent']}, accounted for {sum(books.values()) - books['sent']}"
-                )
+                self._find("commands", f"sent {books['sent']}, accounted for {sum(books.values()) - books['sent']}")
             if arm.gripped and arm.owner is None and not arm.reconciling:
                 self._find("held", "the arm holds something, and nobody will see to it")
         return self.plant.balanced()
@@ -189,9 +187,7 @@ class World:
                 return (key, f"'{value}' is no variant of {part.kind}", nearest(value, part.variants))
         if key in ("count", "slots") and value < 1:
             return (key, f"'{key}' is {value}", "expected at least 1")
-        if key in ("share", "duration_s", "phase_s") and (
-            value < 0 or (key == "share" and not 0 < value <= 1)
-        ):
+        if key in ("share", "duration_s", "phase_s") and (value < 0 or (key == "share" and not 0 < value <= 1)):
             return (
                 key,
                 f"'{key}' is {value}",
