@@ -67,7 +67,9 @@ class Texts:
         parts = [p.replace("<m>", f"<{self.fresh()}>") for p in parts]
         return self.draw.choice([" ; ", " : "]).join(f"({p})" for p in parts)
 
-    def process(self, depth: int, bound: list[str], situations: bool = False, key: tuple[str, str] | None = None) -> str:
+    def process(
+        self, depth: int, bound: list[str], situations: bool = False, key: tuple[str, str] | None = None
+    ) -> str:
         if depth == 0 or self.draw.random() < 0.25:
             return self.leaf(bound, situations, key)
         inner = depth - 1

@@ -64,7 +64,8 @@ class Follower:
         """The run says that this root (1, 2, …) has ended so."""
         fitting = [c for c in self.configs if c.root(root) == Ended(ok, results)]
         if not fitting:
-            raise Disagreement(f"root {root} ended with {ok}, {results}; allowed: {[c.root(root) for c in self.configs]}")
+            allowed = [c.root(root) for c in self.configs]
+            raise Disagreement(f"root {root} ended with {ok}, {results}; allowed: {allowed}")
         self.configs = frozenset(fitting)
 
     def runs(self, root: int) -> None:

@@ -122,7 +122,7 @@ class Controls:
             situation, *values = arguments
             if not isinstance(situation, str):
                 return ERROR
-            cause = self._situations.assert_(situation, tuple(values), owner_of(strand), strand, again=again)
+            cause = self._situations.begin(situation, tuple(values), owner_of(strand), strand, again=again)
             return Outcome(False, cause=cause) if cause else None
 
         return begin

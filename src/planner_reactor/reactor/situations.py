@@ -69,7 +69,7 @@ class Situations:
 
     # -- ASSERT, REASSERT
 
-    def assert_(
+    def begin(
         self, name: str, arguments: tuple[object, ...], owner: Instance | None, strand: Strand, *, again: bool
     ) -> str:
         """Begin an instance, or queue. Returns "" if the strand waits, else the cause for which it fails at once."""

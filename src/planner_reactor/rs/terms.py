@@ -243,7 +243,7 @@ class Schema:
 
 
 class Program:
-    """An immutable set of schemas. `clauses(name)` in order of definition; `with_schemas` and `without` make another."""
+    """An immutable set of schemas, in order of definition; `with_schemas` and `without` make another."""
 
     __slots__ = ("_by_name", "_schemas")
 
