@@ -222,7 +222,7 @@ class Arm:
     def close_on_stack(self) -> bool:
         return self._plant.close_on_stack()
 
-    def close_on_tray(self, tag: str) -> bool:
+    def close_on_tray(self, tag: str) -> tuple[float, float] | None:
         return self._plant.close_on_tray(tag)
 
     def seat(self, pose: tuple[float, float], slot: str) -> Felt:

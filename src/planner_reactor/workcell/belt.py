@@ -19,6 +19,11 @@ from planner_reactor.workcell.calibration import Calibration
 from planner_reactor.workcell.kit import KitSpec, PartKind
 from planner_reactor.workcell.things import Part
 
+CLEAR = 0.035
+"""Metres along the belt that a part keeps clear of others in its lane."""
+ROOM = 5
+"""How far back, in parts, room is looked for."""
+
 
 @dataclass(slots=True)
 class Batch:
@@ -146,10 +151,18 @@ class Belt:
         return part.u + self.speed * self._scheduler.now
 
     def put(self, part: Part, travelled: float) -> None:
-        """Lay a part on the belt, in the next lane."""
-        self._lane = (self._lane + 1) % len(self._calibration.lanes)
-        part.u = travelled - self.speed * self._scheduler.now
-        part.y = self._calibration.lanes[self._lane] + self._calibration.lane_noise * self.feeders[part.kind].across()
+        """Lay a part on the belt, where there is room: in the next free lane, or a little further back."""
+        u = travelled - self.speed * self._scheduler.now
+        lanes = self._calibration.lanes
+        for attempt in range(ROOM * len(lanes)):
+            lane = (self._lane + 1 + attempt) % len(lanes)
+            if attempt and lane == self._lane:
+                u -= CLEAR
+            if self._is_clear(u, lanes[lane]):
+                break
+        self._lane = lane
+        part.u = u
+        part.y = lanes[lane] + self._calibration.lane_noise * self.feeders[part.kind].across()
         self.parts[part.kind][part.number] = part
         self._time_leaving(part)
 
@@ -159,8 +172,10 @@ class Belt:
         self._leaving.pop(part.number).cancel()
 
     def shift(self, part: Part, along: float, across: float) -> None:
-        """A part slides along the belt (m), never over its ends."""
-        travelled = min(max(self.position(part) + along, 0.0), self.length - 0.01)
+        """A part slides along the belt (m), the other way if it would slide over an end."""
+        travelled = self.position(part) + along
+        if not 0.0 <= travelled < self.length - 0.03:
+            travelled = min(max(travelled - 2 * along, 0.0), self.length - 0.03)
         part.u = travelled - self.speed * self._scheduler.now
         part.y += across
         self._leaving.pop(part.number).cancel()
@@ -176,6 +191,13 @@ class Belt:
                 if away <= least:
                     best, least = part, away
         return best
+
+    def _is_clear(self, u: float, y: float) -> bool:
+        for parts in self.parts.values():
+            for part in parts.values():
+                if abs(part.u - u) < CLEAR and abs(part.y - y) < CLEAR / 2:
+                    return False
+        return True
 
     def _time_leaving(self, part: Part) -> None:
         when = (self.length - part.u) / self.speed

@@ -16,6 +16,9 @@ from planner_reactor.workcell.belt import Batch, Turns
 from planner_reactor.workcell.plant import Plant
 from planner_reactor.workcell.things import Part, Tray
 
+REACH_IN_S = 3.0
+"""Seconds between two disturbances of the tray area: one hand at a time."""
+
 Parameters: TypeAlias = Mapping[str, Any]
 Strike: TypeAlias = Callable[[Plant, int, Parameters], bool]
 
@@ -123,6 +126,7 @@ def _part_removed_from_tray(plant: Plant, mark: int, p: Parameters) -> bool:
         slots = [slot for slot in tray.slots if p["part"] in ("", slot)]
         if slots:
             tray.marks = (*tray.marks, mark)
+            plant.reached_in = plant.scheduler.now
             plant.take_from_tray(tray, slots[0], "part_removed_from_tray")
             return True
     return False
@@ -134,6 +138,7 @@ def _part_added_to_tray(plant: Plant, mark: int, p: Parameters) -> bool:
     for tray in _reachable(plant):
         vacant = [kind for kind in reversed(plant.kit.order) if kind not in tray.slots and p["part"] in ("", kind)]
         if vacant:
+            plant.reached_in = plant.scheduler.now
             plant.add_to_tray(tray, _new_part(plant, vacant[0], mark, p["good"]), "part_added_to_tray")
             return True
     return False
@@ -144,6 +149,7 @@ def _tray_moved(plant: Plant, mark: int, p: Parameters) -> bool:
     """A tray is pushed aside."""
     for tray in _reachable(plant):
         tray.marks = (*tray.marks, mark)
+        plant.reached_in = plant.scheduler.now
         tray.pose = (tray.pose[0] + p["along_mm"] / 1000, tray.pose[1] + p["across_mm"] / 1000)
         plant.happened()
         return True
@@ -214,8 +220,10 @@ def _at_gripper(plant: Plant, p: Parameters) -> Part | None:
 
 
 def _reachable(plant: Plant) -> list[Tray]:
-    """The trays that somebody else can reach: nobody reaches under a working arm."""
-    return [] if plant.arm_over_trays else list(plant.area.values())
+    """The trays that somebody else can reach: nobody reaches under a working arm, nor two at once."""
+    if plant.arm_over_trays or plant.scheduler.now < plant.reached_in + REACH_IN_S:
+        return []
+    return list(plant.area.values())
 
 
 def _new_part(plant: Plant, kind: str, mark: int, good: bool) -> Part:

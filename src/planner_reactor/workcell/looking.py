@@ -179,6 +179,4 @@ class Looking:
         """A slot is vacant; if a part had been put there, it has been taken away."""
         if tray.expects(kind):
             self._cell.evidence.against("ACT", f"{kind} is missing from {tray.handle}")
-        self._cell.memory.parts.pop(tray.placed.pop(kind, ""), None)
-        tray.noted.discard(kind)
-        tray.came_filled.discard(kind)
+        self._cell.memory.parts.pop(tray.vacate(kind), None)

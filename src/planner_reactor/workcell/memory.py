@@ -55,6 +55,8 @@ class TrayRecord:
     placed: dict[str, str] = field(default_factory=dict)  # slot → the part that we put there
     noted: set[str] = field(default_factory=set)  # slots that a process found filled by others
     came_filled: set[str] = field(default_factory=set)  # slots seen filled when it was taken from the stack
+    glimpsed: set[str] = field(default_factory=set)  # slots that a monitor saw filled by others
+    gone: set[str] = field(default_factory=set)  # slots that a monitor saw vacant though they should be filled
     tested: bool = False
 
     def blames(self, slot: str) -> str:
@@ -63,7 +65,20 @@ class TrayRecord:
 
     def expects(self, slot: str) -> bool:
         """Should something be in the slot, by all that was done and seen?"""
-        return slot in self.placed or slot in self.noted or slot in self.came_filled
+        return slot in self.placed or slot in self.noted or slot in self.came_filled or slot in self.glimpsed
+
+    def fill(self, slot: str, handle: str) -> None:
+        """We have put this part into the slot."""
+        self.placed[slot] = handle
+        self.gone.discard(slot)
+
+    def vacate(self, slot: str) -> str:
+        """The slot was seen vacant: forget what should be in it; gives the handle of what we had put there,
+        or ''.
+        """
+        for slots in (self.noted, self.came_filled, self.glimpsed, self.gone):
+            slots.discard(slot)
+        return self.placed.pop(slot, "")
 
     def done(self, slot: str) -> bool:
         """Is the slot filled, as far as is known?"""

@@ -143,7 +143,7 @@ class Placing:
         felt = cell.arm.seat(tray.pose, part.kind)
         if felt == "seated":
             part.state = "placed"
-            tray.placed[part.kind] = handle
+            tray.fill(part.kind, handle)
             cell.memory.held = ""
             return
         if felt == "empty":
@@ -176,8 +176,11 @@ class Placing:
             raise Aborted(f"{tray.handle} does not stand in the tray area")
         cell.arm.over_trays()
         yield cell.arm.go("grip tray", cell.calibration.grip_tray_s)
-        if not cell.arm.close_on_tray(tray.tag):
+        pose = cell.arm.close_on_tray(tray.tag)
+        if pose is None:
             raise Aborted(f"{tray.handle} is nowhere in the tray area")
+        if pose != tray.pose:
+            cell.evidence.against("ADT", f"{tray.handle} is not where it was put")
         tray.state = "held"
         cell.memory.held = tray.handle
 

@@ -50,6 +50,7 @@ class Plant:
         self.arm_over_trays = False
         self.closing: tuple[float, float] | None = None
         self.dark_until = -1.0
+        self.reached_in = -1e9  # when somebody else last reached into the tray area
         self.entered: Callable[[Part], None] = lambda part: None
         self.refilled = Signal("stack")
         self.attempts: list[Callable[[], bool]] = []
@@ -102,16 +103,18 @@ class Plant:
         self.happened()
         return True
 
-    def close_on_tray(self, tag: str) -> bool:
-        """Close the gripper on the handle of a tray in the tray area (guided by the palm camera)."""
+    def close_on_tray(self, tag: str) -> tuple[float, float] | None:
+        """Close the gripper on the handle of a tray, guided by the palm camera; gives where it stood, or
+        None.
+        """
         tray = next((tray for tray in self.area.values() if tray.tag == tag), None)
         if tray is None or self.gripper is not None:
-            return False
+            return None
         del self.area[tray.number]
         self.gripper = tray
         self.books.tray_moved(tray, "gripper")
         self.happened()
-        return True
+        return tray.pose
 
     def seat(self, pose: tuple[float, float], slot: str) -> Felt:
         """Press the part down where that slot of a tray at `pose` would be; if "seated", it has let go.
