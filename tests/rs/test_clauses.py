@@ -55,5 +55,5 @@ def test_names_of_basic_and_built_in_processes_are_taken() -> None:
 
 
 def test_many_clauses_are_compared_by_look_up() -> None:
-    program = parse_program("\n".join(f"P[{n}] = Delay[{n}]" for n in range(5000)))
+    program = parse_program("\n".join(f"P[{n}] = Delay[{n}]" for n in range(2000)))
     assert [f for f in check(program) if f.severity == "error"] == []

@@ -8,7 +8,8 @@ from hypothesis import strategies as st
 
 from planner_reactor.errors import Diagnostic, Place, RSError
 from planner_reactor.rs.checks import check, check_addition
-from planner_reactor.rs.loading import load
+from planner_reactor.rs.loading import load, load_process
+from planner_reactor.rs.parser import parse_process
 from planner_reactor.rs.terms import Call, Number, Program, Schema, Symbol
 from tests.strategies import HOST, Scope, Tape, processes, sound_leaf
 
@@ -93,7 +94,7 @@ def broken(found: tuple[Diagnostic, ...]) -> set[tuple[str, str]]:
 
 
 @given(wild_programs(), st.integers(0, 4))
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=200, deadline=None)
 def test_an_addition_is_wrong_exactly_if_the_whole_is_wrong(program: Program, first: int) -> None:
     """If what is there passed the checks, looking at the addition alone misses nothing."""
     there, added = Program(program.schemas[:first]), Program(program.schemas[first:])
@@ -101,3 +102,24 @@ def test_an_addition_is_wrong_exactly_if_the_whole_is_wrong(program: Program, fi
     assert bool(broken(check_addition(there, added, signatures=HOST))) == bool(
         broken(check(program, signatures=HOST))
     )
+
+
+def test_a_process_is_loaded_beside_the_definitions_that_it_calls() -> None:
+    there = load("Serve[t] = Delay[t]", signatures=HOST)
+    assert load_process("Serve[3] ; Act[1]", given=there, signatures=HOST) == parse_process("Serve[3] ; Act[1]")
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("Sevre[3]", "<process>:1:1: unknown process Sevre, did you mean Serve?"),
+        ("Serve[soon]", "<process>:1:7: soon is a symbol where a number is expected"),
+        ("Serve", "<process>:1:1: Serve takes 1 argument, 0 given, expected Serve[t]"),
+        ("Serve[3", "<process>:1:8: expected `]`, found the end of the text"),
+    ],
+)
+def test_a_process_that_cannot_be_started_says_why(text: str, message: str) -> None:
+    there = load("Serve[t] = Delay[t]")
+    with pytest.raises(RSError) as caught:
+        load_process(text, given=there)
+    assert message in str(caught.value)

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Literal, TypeAlias
 
-from planner_reactor.errors import Diagnostic, nearest
+from planner_reactor.errors import Diagnostic
 from planner_reactor.rs.linking import Linked, error
 from planner_reactor.rs.printer import show, show_head
 from planner_reactor.rs.terms import (
@@ -24,7 +24,7 @@ from planner_reactor.rs.terms import (
     Text,
     Variable,
 )
-from planner_reactor.rs.uses import Flows, parameter_kind, sinks_of
+from planner_reactor.rs.uses import Flows, flows, parameter_kind, sinks_of
 from planner_reactor.rs.vocabulary import Kind, Signature
 
 Nature: TypeAlias = Literal["number", "name", "truth value", "unknown"]
@@ -47,9 +47,10 @@ EXPECTED: dict[Kind, str] = {
 }
 
 
-def check_calls(linked: Linked, flows: Flows) -> Iterator[Diagnostic]:
+def check_calls(linked: Linked) -> Iterator[Diagnostic]:
     """Errors "unknown-process", "argument-count", "result-count", "no-clause", "argument-kind" and
     "unknown-function"."""
+    known = flows(linked)
     for number in linked.focus:
         for call in linked.facts[number].calls:
             if call.name in linked.signatures:
@@ -57,9 +58,9 @@ def check_calls(linked: Linked, flows: Flows) -> Iterator[Diagnostic]:
             elif linked.clauses(call.name):
                 yield from _defined(linked, call)
             elif call.name not in linked.families:
-                hint = nearest(call.name, [*linked.names, *linked.signatures])
+                hint = linked.nearest(call.name, {*linked.names, *linked.signatures})
                 yield error(call.place, "unknown-process", f"unknown process {call.name}", hint)
-            yield from _arguments(linked, flows, number, call)
+            yield from _arguments(linked, known, number, call)
 
 
 def _basic(signature: Signature, call: Call) -> Iterator[Diagnostic]:
@@ -95,7 +96,7 @@ def _count(call: Call, what: str, takes: str, given: int, usage: str) -> Diagnos
     return error(call.place, f"{what}-count", message, f"expected {usage}")
 
 
-def _arguments(linked: Linked, flows: Flows, number: int, call: Call) -> Iterator[Diagnostic]:
+def _arguments(linked: Linked, known: Flows, number: int, call: Call) -> Iterator[Diagnostic]:
     signature = linked.signatures.get(call.name)
     for position, argument in enumerate(call.arguments):
         if not isinstance(argument, Symbol | Number | Text | Variable):
@@ -105,7 +106,7 @@ def _arguments(linked: Linked, flows: Flows, number: int, call: Call) -> Iterato
         if signature is not None:
             kind = signature.kind(position)
         else:
-            kind = parameter_kind(linked, sinks_of(linked, flows, call, position))
+            kind = parameter_kind(linked, sinks_of(linked, known, call, position))
         if kind != "any" and _nature(argument) in (NOT_NUMBERS if kind in NUMBERS else NOT_NAMES):
             yield from _misfit(linked, number, call, argument, EXPECTED[kind])
 
@@ -115,7 +116,7 @@ def _inside(linked: Linked, number: int, call: Call, expression: Expression) -> 
     match expression:
         case Apply(function, arguments, place):
             if function not in linked.functions:
-                hint = nearest(function, linked.functions) or "functions come from the host"
+                hint = linked.nearest(function, linked.functions) or "functions come from the host"
                 yield error(place or call.place, "unknown-function", f"unknown function {function}", hint)
             for argument in arguments:
                 yield from _inside(linked, number, call, argument)
@@ -144,7 +145,7 @@ def _misfit(
         if argument.name in binders:
             return  # a result out of its scope: `bindings` says so
         place = argument.place or place
-        hint = nearest(argument.name, [*linked.schemas[number].parameters, *binders])
+        hint = linked.nearest(argument.name, [*linked.schemas[number].parameters, *binders])
         hint = hint or f"no parameter or result is called {argument.name}"
         message = f"{argument.name} is a symbol where {expected} is expected"
     else:

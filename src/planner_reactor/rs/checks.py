@@ -5,7 +5,7 @@ which.
 
     from the text (`parser`, `tokens`, `scope`)
       syntax                 error    the text does not follow the grammar
-      too-long, too-deep, too-many-tokens
+      too-long, too-deep, too-many-tokens, too-many-calls
                              error    a budget is exceeded
       rebound, clash         error    a name is bound twice in one scope, or by two parts side by side
       mixed-operators        warning  `:` and `;` without parentheses
@@ -33,9 +33,9 @@ which.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 
-from planner_reactor.errors import Diagnostic
+from planner_reactor.errors import Diagnostic, RSError
 from planner_reactor.rs.bindings import check_bindings
 from planner_reactor.rs.calls import check_calls
 from planner_reactor.rs.clauses import check_clauses
@@ -47,7 +47,7 @@ from planner_reactor.rs.situations import check_service, check_situations
 from planner_reactor.rs.source import Source
 from planner_reactor.rs.terms import Program
 from planner_reactor.rs.unused import check_unused, reached_from
-from planner_reactor.rs.uses import Flows, flows, uses
+from planner_reactor.rs.uses import uses
 from planner_reactor.rs.vocabulary import BUILT_IN, Signature
 
 
@@ -67,14 +67,7 @@ def check(
     serve all its ports but those that the host serves, `ports`.
     """
     linked = Linked(program, {**signatures, **BUILT_IN}, functions)
-    known = flows(linked)
-    used = uses(linked, known, among=reached_from(linked, roots))
-    return _in_order(
-        _check_definitions(linked, known),
-        check_service(used),
-        check_unused(linked, roots),
-        check_ports(linked, used, ports) if roots or complete else (),
-    )
+    return _in_order(_check_all(linked, roots, ports, complete=complete or bool(roots)))
 
 
 def check_addition(
@@ -91,20 +84,34 @@ def check_addition(
     """
     together = program.with_schemas(added.schemas)
     linked = Linked(together, {**signatures, **BUILT_IN}, functions, given=len(program))
-    return _in_order(_check_definitions(linked, flows(linked)))
+    return _in_order(_check_definitions(linked))
 
 
-def _check_definitions(linked: Linked, known: Flows) -> Iterator[Diagnostic]:
+def _check_all(
+    linked: Linked, roots: Collection[str], ports: Collection[str], *, complete: bool
+) -> Iterator[Diagnostic]:
+    yield from _check_definitions(linked)
+    used = uses(linked, among=reached_from(linked, roots))
+    yield from check_service(linked, used)
+    yield from check_unused(linked, roots)
+    if complete:
+        yield from check_ports(linked, used, ports)
+
+
+def _check_definitions(linked: Linked) -> Iterator[Diagnostic]:
     yield from check_clauses(linked)
-    yield from check_calls(linked, known)
+    yield from check_calls(linked)
     yield from check_bindings(linked)
     yield from check_guardedness(linked)
     yield from check_situations(linked)
 
 
-def _in_order(*found: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
+def _in_order(found: Iterator[Diagnostic]) -> tuple[Diagnostic, ...]:
     """All findings, each once, as they stand in the text."""
-    once = dict.fromkeys(finding for findings in found for finding in findings)
+    try:
+        once = dict.fromkeys(found)
+    except RSError as error:  # the program is too large to be checked
+        return error.diagnostics
     return tuple(sorted(once, key=lambda f: (f.place.file, f.place.line, f.place.column)))
 
 

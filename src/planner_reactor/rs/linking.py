@@ -11,11 +11,11 @@ looked at, and those that they lead to; what was there before cannot call what i
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from functools import cached_property
 from typing import TypeAlias
 
-from planner_reactor.errors import Diagnostic, Place
+from planner_reactor.errors import Diagnostic, Place, RSError, nearest
 from planner_reactor.rs.facts import Facts, facts_of
 from planner_reactor.rs.graphs import reachable
 from planner_reactor.rs.terms import (
@@ -34,6 +34,9 @@ from planner_reactor.rs.vocabulary import Signature
 UNKNOWN = object()
 """The value of an argument that is known only when the program runs."""
 
+MOST_HINTS = 50
+"""Looking for near names takes time."""
+
 NOWHERE = Place(1, 1)
 """Where a term stands that was not read from a text."""
 
@@ -51,14 +54,19 @@ class Linked:
         functions: Collection[str],
         *,
         given: int = 0,
+        most_links: int = 1_000_000,
     ) -> None:
-        """The first `given` definitions have been checked before."""
+        """The first `given` definitions have been checked before. A call and a clause that it may select are
+        a link."""
         self.schemas: tuple[Schema, ...] = program.schemas
         self.focus = range(given, len(self.schemas))
         self.signatures = signatures
         self.functions = functions
         self.facts: tuple[Facts, ...] = tuple(facts_of(schema.body) for schema in self.schemas)
         self.families = frozenset(name for facts in self.facts for name in facts.families)
+        self._most_links = most_links
+        self._hints = 0
+        self._targets: dict[tuple[Value, ...], list[int]] = {}
         self._by_name: dict[str, list[int]] = {}
         self._by_constants: dict[tuple[Value, ...], list[int]] = {}
         self._general: dict[str, list[int]] = {}
@@ -83,19 +91,35 @@ class Linked:
         """The definitions that this call may select, in their order; none for a basic or built-in process."""
         if call.name in self.signatures or call.name not in self._by_name:
             return []
-        values = tuple(map(value_of, call.arguments))
-        if any(v is UNKNOWN for v in values):
-            return [n for n in self._by_name[call.name] if _may_accept(self.schemas[n], values)]
-        general = [n for n in self._general.get(call.name, ()) if _may_accept(self.schemas[n], values)]
-        return sorted(general + self._by_constants.get((call.name, *values), []))
+        asked = (call.name, *map(value_of, call.arguments))
+        found = self._targets.get(asked)
+        if found is None:
+            found = self._targets[asked] = self._select(call.name, asked)
+        return found
+
+    def _select(self, name: str, asked: tuple[Value, ...]) -> list[int]:
+        if UNKNOWN in asked:
+            return [n for n in self._by_name[name] if _may_accept(self.schemas[n], asked[1:])]
+        general = [n for n in self._general.get(name, ()) if _may_accept(self.schemas[n], asked[1:])]
+        return sorted(general + self._by_constants.get(asked, []))
 
     @cached_property
     def calls(self) -> Calls:
-        """The call graph."""
-        return {
-            number: tuple(dict.fromkeys(t for call in facts.calls for t in self.targets(call)))
-            for number, facts in enumerate(self.facts)
-        }
+        """The call graph; raises `RSError` if it is too large to be checked."""
+        found: dict[int, tuple[int, ...]] = {}
+        links = 0
+        for number, facts in enumerate(self.facts):
+            found[number] = tuple(dict.fromkeys(t for call in facts.calls for t in self.targets(call)))
+            links += len(found[number])
+            if links > self._most_links:
+                message = f"the calls of this program may select more than {self._most_links} clauses"
+                raise RSError([error(self.schemas[number].place, "too-many-calls", message)])
+        return found
+
+    def nearest(self, name: str, candidates: Iterable[str]) -> str:
+        """`did you mean X?`, or nothing after so many that more would be no help."""
+        self._hints += 1
+        return nearest(name, sorted(candidates)) if self._hints <= MOST_HINTS else ""
 
     @cached_property
     def calls_in_focus(self) -> Calls:

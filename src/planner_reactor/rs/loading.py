@@ -8,11 +8,11 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping
 
-from planner_reactor.errors import RSError
+from planner_reactor.errors import Place, RSError
 from planner_reactor.rs.checks import check, check_addition
-from planner_reactor.rs.parser import parse_program
+from planner_reactor.rs.parser import parse_process, parse_program
 from planner_reactor.rs.source import Source
-from planner_reactor.rs.terms import Program
+from planner_reactor.rs.terms import Process, Program, Schema
 from planner_reactor.rs.vocabulary import BUILT_IN, Signature
 
 NOTHING = Program()
@@ -42,3 +42,21 @@ def load(
     if errors:
         raise RSError(Source(text, file).shown(errors))
     return program
+
+
+def load_process(
+    text: str,
+    *,
+    given: Program,
+    file: str = "<process>",
+    signatures: Mapping[str, Signature] = BUILT_IN,
+    functions: Collection[str] = frozenset(),
+) -> Process:
+    """One process, as it is started beside the definitions `given`: `REACTOR`, `Serve[3]`. Raises `RSError`."""
+    process = parse_process(text, file=file)
+    alone = Program([Schema(file, (), (), process, Place(1, 1, file))])
+    found = check_addition(given, alone, signatures=signatures, functions=functions)
+    errors = [f for f in found if f.severity == "error"]
+    if errors:
+        raise RSError(Source(text, file).shown(errors))
+    return process

@@ -9,42 +9,36 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator
 
-from planner_reactor.errors import Diagnostic, nearest
+from planner_reactor.errors import Diagnostic
 from planner_reactor.rs.linking import Linked, error
 from planner_reactor.rs.uses import Sink, Uses
 from planner_reactor.rs.vocabulary import BUILT_IN
 
 READS: tuple[Sink, ...] = (("IN", 0),)
 WRITES: tuple[Sink, ...] = (("OUT", 0), ("STREAM", 0))
+SIDES = (
+    (READS, WRITES, "read but never written", "writes"),
+    (WRITES, READS, "written but never read", "reads"),
+)
 
 
 def check_ports(linked: Linked, used: Uses, served: Collection[str]) -> Iterator[Diagnostic]:
     """Errors "unserved-port"."""
-    of_host = tuple(
-        (signature.name, position)
-        for signature in linked.signatures.values()
-        for position, kind in enumerate(signature.inputs)
-        if kind == "port" and signature.name not in BUILT_IN
-    )
-    either = {*served, *used.of(of_host)}
-    if not used.open_sinks.intersection(of_host):
-        yield from _one_sided(used, READS, WRITES, either, "read", "written")
-        yield from _one_sided(used, WRITES, READS, either, "written", "read")
+    by_host = tuple(_ports_of_host(linked))
+    either = {*served, *used.of(by_host)}
+    for here, there, one_sided, lacking in SIDES:
+        if used.open_sinks.intersection((*there, *by_host)):
+            continue  # some port that only the run will tell may be served there
+        ours, others = used.of(here), used.of(there)
+        meant = [port for port in others if port not in ours]
+        for port, place in ours.items():
+            if port not in others and port not in either:
+                hint = linked.nearest(port, meant) or f"nothing here {lacking} it"
+                yield error(place, "unserved-port", f"port {port} is {one_sided}", hint)
 
 
-def _one_sided(
-    used: Uses,
-    here: tuple[Sink, ...],
-    there: tuple[Sink, ...],
-    either: Collection[str],
-    is_: str,
-    is_not: str,
-) -> Iterator[Diagnostic]:
-    ours, others = used.of(here), used.of(there)
-    if used.open_sinks.intersection(there):
-        return
-    for name, place in ours.items():
-        if name not in others and name not in either:
-            meant = nearest(name, [port for port in others if port not in ours])
-            hint = meant or f"nothing here {'writes' if is_not == 'written' else 'reads'} it"
-            yield error(place, "unserved-port", f"port {name} is {is_} but never {is_not}", hint)
+def _ports_of_host(linked: Linked) -> Iterator[Sink]:
+    for signature in linked.signatures.values():
+        for position, kind in enumerate(signature.inputs):
+            if kind == "port" and signature.name not in BUILT_IN:
+                yield signature.name, position

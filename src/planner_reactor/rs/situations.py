@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator
 
-from planner_reactor.errors import Diagnostic, Place, nearest
+from planner_reactor.errors import Diagnostic, Place
 from planner_reactor.rs.facts import Service, facts_of
 from planner_reactor.rs.graphs import cycles, reachable
 from planner_reactor.rs.linking import Linked, error, value_of, warning
@@ -26,16 +26,16 @@ def check_situations(linked: Linked) -> Iterator[Diagnostic]:
     yield from _below_itself(linked)
 
 
-def check_service(used: Uses) -> Iterator[Diagnostic]:
+def check_service(linked: Linked, used: Uses) -> Iterator[Diagnostic]:
     """Warnings "unserved-situation"."""
     served = used.of([("SIT", 0)])
     asserted = used.of([("ASSERT", 0), ("REASSERT", 0)])
     if ("SIT", 0) in used.open_sinks:
         return
+    meant = [situation for situation in served if situation not in asserted]
     for name, place in asserted.items():
         if name not in served:
-            meant = nearest(name, [s for s in served if s not in asserted])
-            hint = meant or f"nothing here waits for it with SIT[{name}]"
+            hint = linked.nearest(name, meant) or f"nothing here waits for it with SIT[{name}]"
             yield warning(place, "unserved-situation", f"situation {name} is asserted but never served", hint)
 
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator
 
-from planner_reactor.errors import Diagnostic, nearest
+from planner_reactor.errors import Diagnostic
 from planner_reactor.rs.facts import names
 from planner_reactor.rs.graphs import reachable
 from planner_reactor.rs.linking import Linked, error, warning
@@ -21,7 +21,8 @@ def check_unused(linked: Linked, roots: Collection[str]) -> Iterator[Diagnostic]
     """Warnings "unreachable" and "unused-parameter"; error "unknown-process" for a root that is not there."""
     for root in roots:
         if not linked.clauses(root):
-            yield error(None, "unknown-process", f"unknown process {root}", nearest(root, linked.names))
+            hint = linked.nearest(root, linked.names)
+            yield error(None, "unknown-process", f"unknown process {root}", hint)
     reached = reached_from(linked, roots) if roots else reachable(linked.calls, _plausible_roots(linked))
     for number, schema in enumerate(linked.schemas):
         if number not in reached and schema.name not in linked.families:

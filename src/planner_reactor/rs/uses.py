@@ -58,9 +58,10 @@ def flows(linked: Linked) -> Flows:
     return solve(linked.calls_in_focus, nothing, lambda number, known: _flow(linked, number, known))
 
 
-def uses(linked: Linked, known: Flows, *, among: Collection[int]) -> Uses:
+def uses(linked: Linked, *, among: Collection[int]) -> Uses:
     """What reaches the sinks from the definitions `among`. Those that no other of them calls are called from
     outside, with any arguments."""
+    known = flows(linked)
     called = {t for number in among for t in linked.calls[number] if t != number}
     found = Uses()
     for number in among:
