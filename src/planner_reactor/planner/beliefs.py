@@ -1,0 +1,80 @@
+"""The problem-solving context: what the planner takes to be so while it plans (R §7.2).
+
+`Beliefs` hold every assumption that there is no evidence against, the domain's facts, and what the reactor has told
+on request. They answer what a plan may rest on, and say which assumptions an answer used or missed. Immutable: the
+planner makes new ones when it relaxes, reinstates or learns something.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+
+from planner_reactor.logic.domain import Assumption, Domain
+from planner_reactor.logic.formulas import Atom, Bindings, Numeral
+
+
+@dataclass(frozen=True, slots=True)
+class Answer:
+    """Does something hold? `used` are the assumptions that it rests on, `missing` those without which it fails."""
+
+    holds: bool
+    used: frozenset[str] = frozenset()
+    missing: frozenset[str] = frozenset()
+
+
+_CERTAIN = Answer(True)
+
+
+@dataclass(frozen=True, slots=True)
+class Beliefs:
+    """Assumptions in doubt (`relaxed`), and ground atoms known beyond the domain's facts (`told`: true or false)."""
+
+    domain: Domain
+    relaxed: frozenset[str] = frozenset()
+    told: frozenset[tuple[Atom, bool]] = frozenset()
+
+    def without(self, assumption: str) -> Beliefs:
+        return replace(self, relaxed=self.relaxed | {assumption})
+
+    def reinstated(self, assumption: str) -> Beliefs:
+        return replace(self, relaxed=self.relaxed - {assumption})
+
+    def learning(self, atom: Atom, *, holds: bool) -> Beliefs:
+        """With an answer to a perception request; it replaces an earlier one."""
+        return replace(self, told=self.told - {(atom, not holds)} | {(atom, holds)})
+
+    def assume(self, atoms: Iterable[Atom], bindings: Bindings | None = None) -> Answer:
+        """Do all of these assumptions hold? An assumption with arguments fails with its name or for them alone."""
+        used, missing = set(), set()
+        for atom in atoms:
+            name = assumption_name(bindings.ground(atom) if bindings else atom)
+            (missing if {name, atom.predicate} & self.relaxed else used).add(name)
+        return Answer(not missing, frozenset(used), frozenset(missing))
+
+    def known(self, atom: Atom) -> bool | None:
+        """What has been told of a ground atom; None if nothing."""
+        if (atom, True) in self.told:
+            return True
+        return False if (atom, False) in self.told else None
+
+    def lasting(self, atom: Atom) -> Answer:
+        """Does it last until something excludes it? If its persistence rests on assumptions, only with them."""
+        for persistence in self.domain.persistences.get(atom.predicate, ()):
+            bindings = Bindings()
+            offset = 1 + max((a for a in atom.arguments if type(a) is int), default=-1)
+            pattern = persistence.atom.shifted(offset)
+            if bindings.unify(pattern.arguments, atom.arguments):
+                return self.assume((a.shifted(offset) for a in persistence.assumptions), bindings)
+        return _CERTAIN
+
+    def assumption(self, name: str) -> Assumption:
+        """The declaration behind a name such as `A` or `A(x)`."""
+        return self.domain.assumptions[name.partition("(")[0]]
+
+
+def assumption_name(atom: Atom) -> str:
+    """`A`, or `A(x)` where its arguments are constants of the domain."""
+    if not atom.arguments or not all(isinstance(a, str | Numeral) for a in atom.arguments):
+        return atom.predicate
+    return f"{atom.predicate}({','.join(map(str, atom.arguments))})"

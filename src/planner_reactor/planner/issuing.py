@@ -1,0 +1,272 @@
+"""From refinements to adaptations: what is new, what goes, which monitors come and go (R §7.2, §8.3).
+
+An `Issuer` compares a draft (one situation planned anew, with the sub-situations that are new) with the model, writes
+the difference as one adaptation, and records it in the model at once; if the reactor does not apply it, everything is
+taken back. Labels and ids are never used twice. While an adaptation is under way the situations that it touches are
+held back.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+
+from planner_reactor.link.messages import Adaptation, Change, Mode
+from planner_reactor.logic.formulas import Atom
+from planner_reactor.planner import reactions
+from planner_reactor.planner.beliefs import Beliefs
+from planner_reactor.planner.model import Model, Segment
+from planner_reactor.planner.refinement import Refinement, Situation
+from planner_reactor.planner.structure import Action
+from planner_reactor.rs.terms import Process
+
+Monitor = tuple[str, str]
+"""ASSUMONITOR or HOLDMONITOR, and the assumption that it watches."""
+
+
+@dataclass(slots=True)
+class Draft:
+    """A situation that is being planned, with the sub-situations that have to be planned before it is issued."""
+
+    segment: Segment
+    purpose: str
+    assumption: str = ""
+    refinements: dict[Situation, Refinement] = field(default_factory=dict)
+    waiting: list[Situation] = field(default_factory=list)
+
+
+@dataclass(frozen=True, slots=True)
+class UnderWay:
+    """An adaptation that was issued and not yet answered, and how to take it back."""
+
+    adaptation: Adaptation
+    segment: Situation | None
+    touched: frozenset[Situation]
+    before: tuple[tuple[Situation, Segment | None], ...]
+    monitors: dict[Monitor, int]
+
+
+@dataclass(slots=True)
+class _Parts:
+    """What one adaptation consists of, while it is put together."""
+
+    clauses: dict[int, Process] = field(default_factory=dict)
+    kills: list[int] = field(default_factory=list)
+    changes: list[Change] = field(default_factory=list)
+    removed: list[str] = field(default_factory=list)
+    adds: list[int] = field(default_factory=list)  # top-down
+
+
+@dataclass(slots=True)
+class Issuer:
+    """Issues adaptations for a model; `under_way` holds those that the reactor has not answered."""
+
+    model: Model
+    fold: bool
+    stub_ms: int
+    period_ms: int | None
+    mode: Mode
+    epoch: int = 0
+    next_label: int = 0
+    next_id: int = 1
+    monitors: dict[Monitor, int] = field(default_factory=dict)
+    requests: dict[Atom, int] = field(default_factory=dict)
+    under_way: dict[int, UnderWay] = field(default_factory=dict)
+
+    # ------------------------------------------------------------------------------------- what may go out
+
+    def is_held(self, situations: Iterable[Situation]) -> bool:
+        """Does an adaptation under way touch any of these?"""
+        touched = [flight.touched for flight in self.under_way.values()]
+        return any(situation in some for situation in situations for some in touched)
+
+    def touched_by(self, draft: Draft) -> frozenset[Situation]:
+        """All situations that the draft would change, remove, or newly refer to."""
+        segment = draft.segment
+        refinement = draft.refinements[segment.situation]
+        gone = self.model.orphans(segment, refinement.children)
+        referred = {c.situation for r in draft.refinements.values() for c in r.children}
+        fresh = {s for s in referred if s not in self.model.segments or self.model.segments[s].version == 0}
+        callers = {caller for orphan in gone for caller in self.model.callers(orphan.situation)}
+        return frozenset({segment.situation, *draft.refinements, *fresh, *callers, *(o.situation for o in gone)})
+
+    def issue(self, draft: Draft, beliefs: Beliefs, holding: frozenset[str]) -> Adaptation | None:
+        """Record the draft in the model and write the adaptation; None if nothing in the reactor has to change."""
+        segment, model = draft.segment, self.model
+        refinement = draft.refinements[segment.situation]
+        process = reactions.reaction(refinement, model.names, fold=self.fold)
+        gone = model.orphans(segment, refinement.children)
+        new = self._new(draft)
+        touched = self.touched_by(draft)
+        before = tuple(model.snapshot([segment.situation, *new, *(o.situation for o in gone)]))
+        same = segment.label is not None and process == segment.process
+        told = segment.required
+        used = set(model.used())
+        parts = _Parts()
+        first = segment.label is None
+        if first and segment.situation == model.root:
+            self._add(parts, reactions.root(segment.situation, model.names))
+        model.put(segment, refinement)
+        if not same:
+            self._replace(parts, segment, process)
+        if not same or told != refinement.required:
+            assumptions = tuple(sorted(refinement.required))
+            parts.changes.append(
+                Change(situation=segment.name, base=segment.version, assumptions=assumptions, fresh=first)
+            )
+        for situation, path in new.items():
+            self._introduce(parts, situation, path, draft)
+        for orphan in gone:
+            if orphan.label is not None:
+                parts.kills.append(orphan.label)
+            parts.removed.append(orphan.name)
+            model.remove(orphan)
+        monitors = dict(self.monitors)
+        self._watch(parts, beliefs, holding - set(model.used()))
+        return self._send(parts, draft, touched, before, monitors, used)
+
+    def reconcile(self, beliefs: Beliefs, holding: frozenset[str], asked: dict[Atom, Action]) -> Adaptation | None:
+        """An adaptation for monitors and perception requests alone, if any are missing or left over."""
+        parts, monitors, used = _Parts(), dict(self.monitors), set(self.model.used())
+        self._watch(parts, beliefs, holding)
+        for atom, action in asked.items():
+            if atom not in self.requests:
+                label = self._add(parts, reactions.request(action, atom.predicate, atom.arguments))
+                self.requests[atom] = label
+        return self._send(parts, None, frozenset(), (), monitors, used)
+
+    # ------------------------------------------------------------------------------------------- its parts
+
+    def _new(self, draft: Draft) -> dict[Situation, tuple[int, ...]]:
+        """The situations that are not in the model with their paths, a parent before its children."""
+        found: dict[Situation, tuple[int, ...]] = {}
+        waiting = [(draft.segment.situation, draft.segment.path)]
+        while waiting:
+            situation, path = waiting.pop(0)
+            if situation not in self.model.segments and situation not in found:
+                found[situation] = path
+            refinement = draft.refinements.get(situation)
+            if refinement is not None:
+                below = dict.fromkeys(child.situation for child in refinement.children)
+                waiting = [*((s, (*path, n)) for n, s in enumerate(below) if s not in found), *waiting]
+        found.pop(draft.segment.situation, None)
+        return found
+
+    def _add(self, parts: _Parts, process: Process) -> int:
+        label = self.next_label
+        self.next_label += 1
+        parts.clauses[label] = process
+        parts.adds.append(label)
+        return label
+
+    def _replace(self, parts: _Parts, segment: Segment, process: Process) -> None:
+        if segment.label is not None:
+            parts.kills.append(segment.label)
+        segment.process = process
+        segment.label = self._add(parts, process)
+
+    def _introduce(self, parts: _Parts, situation: Situation, path: tuple[int, ...], draft: Draft) -> None:
+        refinement = draft.refinements.get(situation)
+        segment = self.model.new(situation, self.model.context(situation, draft.refinements.values()), path)
+        self.model.put(segment, refinement)
+        if refinement is None:
+            process = reactions.stub(situation, self.model.names, self.stub_ms)
+        else:
+            process = reactions.reaction(refinement, self.model.names, fold=self.fold)
+        self._replace(parts, segment, process)
+        assumptions = tuple(sorted(segment.required))
+        parts.changes.append(
+            Change(situation=segment.name, base=segment.version, assumptions=assumptions, fresh=True)
+        )
+
+    def _watch(self, parts: _Parts, beliefs: Beliefs, holding: Iterable[str]) -> None:
+        """Bring the monitors into line with the assumptions in use."""
+        wanted: dict[Monitor, int] = {}
+        for name in sorted(self.model.used(), key=lambda n: (beliefs.assumption(n).likelihood, n)):
+            declared = beliefs.assumption(name)
+            if declared.monitor == "flag":
+                wanted["ASSUMONITOR", name] = self.period_ms or declared.period_ms
+        for name in sorted(holding):
+            wanted["HOLDMONITOR", name] = self.period_ms or beliefs.assumption(name).period_ms
+        for monitor in [m for m in self.monitors if m not in wanted]:
+            parts.kills.append(self.monitors.pop(monitor))
+        for (kind, name), period in wanted.items():
+            if (kind, name) not in self.monitors:
+                self.monitors[kind, name] = self._add(parts, reactions.monitor(kind, name, period))
+
+    def _send(
+        self,
+        parts: _Parts,
+        draft: Draft | None,
+        touched: frozenset[Situation],
+        before: tuple[tuple[Situation, Segment | None], ...],
+        monitors: dict[Monitor, int],
+        used: set[str],
+    ) -> Adaptation | None:
+        if not (parts.changes or parts.kills or parts.adds):
+            return None
+        after = set(self.model.used())
+        adaptation = Adaptation(
+            id=self.next_id,
+            epoch=self.epoch,
+            definitions="".join(f"{reactions.clause(n, p)}\n" for n, p in sorted(parts.clauses.items())),
+            changes=tuple(parts.changes),
+            removed=tuple(parts.removed),
+            kills=tuple(parts.kills),
+            adds=tuple(reversed(parts.adds)),
+            mode=self.mode,
+            purpose=draft.purpose if draft else "monitors and requests",
+            drops=tuple(sorted(used - after)),
+            adopts=tuple(sorted(after - used)),
+        )
+        self.next_id += 1
+        situation = draft.segment.situation if draft else None
+        self.under_way[adaptation.id] = UnderWay(adaptation, situation, touched, before, monitors)
+        for situation in touched:
+            if situation in self.model.segments:
+                self.model.segments[situation].pending = adaptation.id
+        return adaptation
+
+    # ---------------------------------------------------------------------------------- what became of it
+
+    def applied(self, number: int) -> UnderWay | None:
+        """The reactor has applied it: versions rise, what was held back may go on."""
+        flight = self.under_way.pop(number, None)
+        if flight is None:
+            return None
+        self._release(flight)
+        changed = {change.situation for change in flight.adaptation.changes}
+        for situation in flight.touched:
+            segment = self.model.segments.get(situation)
+            if segment is not None and segment.name in changed:
+                segment.version += 1
+                segment.refusals = 0
+        for situation, _ in flight.before:
+            if self.model.names[situation] in flight.adaptation.removed:
+                self.model.is_removed(situation)
+        return flight
+
+    def not_applied(self, number: int) -> UnderWay | None:
+        """The reactor has applied nothing of it: the model is as it was before."""
+        flight = self.under_way.pop(number, None)
+        if flight is None:
+            return None
+        self._release(flight)
+        self.model.restore(flight.before)
+        mine = set(flight.adaptation.adds)
+        for monitor, label in list(self.monitors.items()):
+            if label in mine:
+                del self.monitors[monitor]
+        for monitor, label in flight.monitors.items():
+            if label in flight.adaptation.kills:
+                self.monitors.setdefault(monitor, label)
+        for atom, label in list(self.requests.items()):
+            if label in mine:
+                del self.requests[atom]
+        return flight
+
+    def _release(self, flight: UnderWay) -> None:
+        for situation in flight.touched:
+            segment = self.model.segments.get(situation)
+            if segment is not None and segment.pending == flight.adaptation.id:
+                segment.pending = None

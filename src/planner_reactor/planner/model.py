@@ -1,0 +1,222 @@
+"""What the planner knows of the reactor: its own record of what it issued and what was applied (R §7.1, R_t).
+
+One `Segment` for each situation: its reaction, the version of it that the reactor has, how it was refined and on
+which assumptions it rests. The situations form an acyclic digraph; what a situation may count on (its `Context`) is
+what all that assert it grant. `impossible` segments are those for which no plan was found, with the reason.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field, replace
+
+from planner_reactor.planner.reactions import Names
+from planner_reactor.planner.refinement import Child, Context, Refinement, Situation
+from planner_reactor.rs.terms import Process
+
+
+@dataclass(slots=True)
+class Segment:
+    """One situation in the reactor, as far as is known.
+
+    `path` leads to it from the root, by the places of calls; what comes earlier in the text is planned earlier.
+    `refinement` is None for a stub. `pending` is the adaptation under way that changes it. `stale`: it has to be
+    planned again, because an assumption, a caller or the knowledge changed.
+    """
+
+    situation: Situation
+    name: str
+    path: tuple[int, ...]
+    context: Context
+    refinement: Refinement | None = None
+    process: Process | None = None
+    label: int | None = None
+    version: int = 0
+    pending: int | None = None
+    stale: bool = False
+    urgency: int = 0
+    impossible: str = ""
+    refusals: int = 0
+
+    @property
+    def is_stub(self) -> bool:
+        return self.refinement is None
+
+    @property
+    def required(self) -> frozenset[str]:
+        """The assumptions on which its reaction rests."""
+        return self.refinement.required if self.refinement else frozenset()
+
+    @property
+    def in_use(self) -> frozenset[str]:
+        """The assumptions that it rests on or brings in."""
+        return self.required | self.refinement.presumed if self.refinement else frozenset()
+
+    @property
+    def children(self) -> tuple[Child, ...]:
+        return self.refinement.children if self.refinement else ()
+
+    @property
+    def is_open(self) -> bool:
+        """Is something to be done about it, now or as soon as the adaptation under way is applied?"""
+        return (self.is_stub or self.stale) and not self.impossible
+
+
+@dataclass(slots=True)
+class Model:
+    """All segments, in the order in which they came up."""
+
+    root: Situation
+    names: Names = field(default_factory=Names)
+    segments: dict[Situation, Segment] = field(default_factory=dict)
+    uses: Counter[str] = field(default_factory=Counter)
+    _calls: dict[Situation, dict[Situation, tuple[Child, ...]]] = field(default_factory=dict)
+    _versions: dict[Situation, int] = field(default_factory=dict)
+
+    def __iter__(self) -> Iterator[Segment]:
+        return iter(self.segments.values())
+
+    def named(self, name: str) -> Segment | None:
+        """The segment of the situation with this name."""
+        return next((s for s in self if s.name == name), None)
+
+    def using(self, assumption: str) -> list[Segment]:
+        return [segment for segment in self if assumption in segment.in_use]
+
+    def new(self, situation: Situation, context: Context, path: tuple[int, ...] = ()) -> Segment:
+        """A segment that is not in the model yet; its version goes on from where a removed one ended."""
+        version = self._versions.get(situation, 0)
+        return Segment(situation, self.names[situation], path, context, version=version)
+
+    def put(self, segment: Segment, refinement: Refinement | None) -> None:
+        """Record a segment with this refinement, replacing what was recorded before."""
+        self._forget(segment)
+        segment.refinement = refinement
+        self.segments[segment.situation] = segment
+        self.uses.update(segment.in_use)
+        calls: dict[Situation, list[Child]] = {}
+        for child in segment.children:
+            calls.setdefault(child.situation, []).append(child)
+        for situation, children in calls.items():
+            self._calls.setdefault(situation, {})[segment.situation] = tuple(children)
+
+    def remove(self, segment: Segment) -> None:
+        self._forget(segment)
+        self._versions[segment.situation] = segment.version
+        self.segments.pop(segment.situation, None)
+
+    def is_removed(self, situation: Situation) -> None:
+        """The reactor has removed it, which counts as a version."""
+        self._versions[situation] = self._versions.get(situation, 0) + 1
+
+    def _forget(self, segment: Segment) -> None:
+        if segment.situation in self.segments:
+            self.uses.subtract(segment.in_use)
+            for child in segment.children:
+                self._calls[child.situation].pop(segment.situation, None)
+
+    def callers(self, situation: Situation) -> tuple[Situation, ...]:
+        return tuple(self._calls.get(situation, ()))
+
+    def context(self, situation: Situation, drafted: Iterable[Refinement] = ()) -> Context:
+        """What the situation may count on: what every call of it grants, also those of a draft."""
+        refinements = {r.situation: r for r in drafted}
+        calls: list[Child] = []
+        forbidden = {situation.schema}
+        for caller, children in self._calls.get(situation, {}).items():
+            if caller not in refinements:
+                calls.extend(children)
+                forbidden |= self.segments[caller].context.forbidden
+        for refinement in refinements.values():
+            own = [child for child in refinement.children if child.situation == situation]
+            if own:
+                calls.extend(own)
+                forbidden |= self._forbidden(refinement.situation, refinements)
+        return Context(_granted(calls), _replayed(calls), frozenset(forbidden))
+
+    def _forbidden(self, situation: Situation, drafted: dict[Situation, Refinement]) -> frozenset[str]:
+        if situation in self.segments:
+            return self.segments[situation].context.forbidden
+        return self.context(situation, drafted.values()).forbidden
+
+    def renew_contexts(self, situations: Iterable[Situation]) -> list[Segment]:
+        """Work out anew what these may count on, and those below them; the segments for which it matters."""
+        changed: list[Segment] = []
+        waiting = list(dict.fromkeys(situations))
+        while waiting:
+            segment = self.segments.get(waiting.pop(0))
+            if segment is None or segment.situation == self.root:
+                continue
+            context = self.context(segment.situation)
+            if context == segment.context:
+                continue
+            if _matters(segment, context):
+                changed.append(segment)
+            segment.context = context
+            waiting.extend(child.situation for child in segment.children)
+        return changed
+
+    def orphans(self, segment: Segment, children: Iterable[Child]) -> list[Segment]:
+        """What nothing asserts any more once the segment has these children instead of its own; top-down."""
+        kept = {child.situation for child in children}
+        gone: list[Segment] = []
+        leaving = {segment.situation}
+        waiting = [c.situation for c in segment.children if c.situation not in kept]
+        while waiting:
+            situation = waiting.pop(0)
+            own = self.segments.get(situation)
+            if own is None or own in gone or situation in kept:
+                continue
+            if set(self.callers(situation)) <= leaving:
+                gone.append(own)
+                leaving.add(situation)
+                waiting.extend(child.situation for child in own.children)
+        return gone
+
+    def used(self) -> list[str]:
+        """The assumptions in use."""
+        return [assumption for assumption, count in self.uses.items() if count > 0]
+
+    def snapshot(self, situations: Iterable[Situation]) -> list[tuple[Situation, Segment | None]]:
+        """What is recorded of these, to be `restored` if an adaptation is not applied."""
+        return [(s, replace(self.segments[s]) if s in self.segments else None) for s in situations]
+
+    def restore(self, snapshot: Iterable[tuple[Situation, Segment | None]]) -> None:
+        for situation, segment in snapshot:
+            if situation in self.segments:
+                self.remove(self.segments[situation])
+            if segment is not None:
+                self.put(segment, segment.refinement)
+
+
+def _granted(calls: list[Child]) -> tuple[bool, ...]:
+    return tuple(all(granted) for granted in zip(*(call.granted for call in calls), strict=True))
+
+
+def _replayed(calls: list[Child]) -> frozenset[int] | None:
+    """Is it asserted again after it succeeded, and which inputs are then the same?"""
+    found: frozenset[int] | None = None
+    for n, call in enumerate(calls):
+        if call.replayed is not None:
+            found = (found or frozenset()) | call.replayed
+        for other in calls[:n]:
+            if _may_be_same(call, other):
+                found = (found or frozenset()) | frozenset(range(len(call.arguments)))
+    return found
+
+
+def _may_be_same(one: Child, other: Child) -> bool:
+    return not any(
+        isinstance(a, str) and isinstance(b, str) and a != b
+        for a, b in zip(one.arguments, other.arguments, strict=True)
+    )
+
+
+def _matters(segment: Segment, context: Context) -> bool:
+    """Could the segment look different with this context?"""
+    before = segment.context
+    if context.granted != before.granted or context.replayed != before.replayed:
+        return True
+    refinement = segment.refinement
+    return refinement is not None and bool(refinement.blocked & (before.forbidden - context.forbidden))

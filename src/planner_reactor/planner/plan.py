@@ -1,0 +1,152 @@
+"""A partial plan: steps, what supports their conditions, and how they lie in time (R §7.2, §7.4).
+
+The steps are intervals of an Allen network; the intervals of conditions and effects are eliminated by composition: a
+step that `meets` its effect, which must `[m o si e di fi]` its user, is `[b m]` that user. `Link` records that an
+effect is used, so that it can be protected. Everything can be undone to a mark, because search backtracks.
+
+Legend: START stands for what holds when the situation is asserted, END for the moment when it succeeds.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+from planner_reactor.logic.allen import relations
+from planner_reactor.logic.domain import ActionSchema, Effect
+from planner_reactor.logic.formulas import Atom, Bindings, Term
+from planner_reactor.logic.network import Network
+
+START, END = -1, -2
+"""Where a link begins or ends when it is not a step."""
+BEFORE = relations(["b", "m"])
+NOT_LATER = relations(["b", "m", "o", "s", "si", "e", "di", "fi"])
+"""The first starts before the second, or with it."""
+CONTAINS = relations(["si", "e", "di", "fi"])
+
+
+@dataclass(frozen=True, slots=True)
+class Parameter:
+    """A constant of plans: what the situation was asserted with."""
+
+    number: int
+
+
+@dataclass(frozen=True, slots=True)
+class Result:
+    """A constant of plans: what a step returns. It differs from everything that is known before."""
+
+    step: int
+    number: int
+
+
+@dataclass(frozen=True, slots=True)
+class Unnamed:
+    """A constant of plans: something that exists as an effect, and that nothing can name."""
+
+    step: int
+    number: int
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """One action of a plan; `offset` is added to the variables of its schema."""
+
+    number: int
+    schema: ActionSchema
+    offset: int
+
+    @property
+    def inputs(self) -> tuple[int, ...]:
+        return tuple(self.offset + variable for variable in self.schema.inputs)
+
+    def effects(self) -> Iterator[Effect]:
+        """Its effects with its own variables."""
+        for effect in self.schema.effects:
+            yield Effect(effect.atom.shifted(self.offset), effect.relation)
+
+
+@dataclass(frozen=True, slots=True)
+class Link:
+    """`atom`, from `producer`, supports condition number `condition` of `consumer`.
+
+    `throughout`: it is needed until the consumer has ended, else only when it starts. `maintained`: it holds only
+    while the producer runs. `derived`: a rule says so on assumptions. `lost`: the consumer is abstract and cannot
+    count on it for as long as it runs, because nothing makes it last.
+    """
+
+    atom: Atom
+    producer: int
+    consumer: int
+    condition: int = 0
+    throughout: bool = False
+    maintained: bool = False
+    derived: bool = False
+    lost: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Use:
+    """An assumption that the plan rests on, or (not `required`) only brings in."""
+
+    assumption: str
+    required: bool
+
+
+@dataclass(slots=True)
+class Plan:
+    """The mutable state of a search. Its steps count from `first`, so that plans that follow each other differ."""
+
+    bindings: Bindings = field(default_factory=Bindings)
+    network: Network = field(default_factory=Network)
+    steps: list[Step] = field(default_factory=list)
+    links: list[Link] = field(default_factory=list)
+    uses: list[Use] = field(default_factory=list)
+    distinct: list[tuple[Term, Term]] = field(default_factory=list)
+    variables: int = 0
+    first: int = 0
+
+    def fresh(self, count: int) -> int:
+        """An offset for `count` new variables (numbers are never used again, also after undoing)."""
+        self.variables += count
+        return self.variables - count
+
+    def add(self, schema: ActionSchema) -> Step:
+        """A new step: its outputs are results, what exists as its effect is unnamed, its inputs are open."""
+        step = Step(self.first + len(self.steps), schema, self.fresh(schema.size))
+        for n, variable in enumerate(schema.outputs):
+            self.bindings.bind(step.offset + variable, Result(step.number, n))
+        for n, variable in enumerate(schema.unnamed):
+            self.bindings.bind(step.offset + variable, Unnamed(step.number, n))
+        self.steps.append(step)
+        self.network.add(step.number)
+        return step
+
+    def step(self, number: int) -> Step:
+        return self.steps[number - self.first]
+
+    def order(self, first: int, second: int, relation: int) -> bool:
+        return self.network.constrain(first, second, relation)
+
+    def is_before(self, first: int, second: int) -> bool:
+        """Has the first certainly ended when the second starts?"""
+        return self.network.relation(first, second) & ~BEFORE == 0
+
+    def arguments(self, step: Step) -> tuple[Term, ...]:
+        return tuple(self.bindings.walk(variable) for variable in step.inputs)
+
+    def mark(self) -> tuple[int, ...]:
+        return (
+            self.bindings.mark(),
+            self.network.mark(),
+            len(self.steps),
+            len(self.links),
+            len(self.uses),
+            len(self.distinct),
+        )
+
+    def undo(self, mark: tuple[int, ...]) -> None:
+        bindings, network, steps, links, uses, distinct = mark
+        self.bindings.undo(bindings)
+        self.network.undo(network)
+        del self.steps[steps:], self.links[links:], self.uses[uses:], self.distinct[distinct:]

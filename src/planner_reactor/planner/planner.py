@@ -1,0 +1,459 @@
+"""The planner: two loops that never end (R §7.1, §7.3, §7.5, Fig. 4).
+
+The inner loop reduces the expectation, what the reactor for the assumptions held should have and does not have yet,
+one situation at a time; when nothing is left the reactor is ω-ideal, and the outer loop relaxes the assumption in use
+that is least likely to hold. Perceptions change what is done next:
+
+    failed situations > failed assumptions > active stubs > quiescent stubs
+
+A `step` is one short piece of work, so that a perception is never kept waiting. Nothing here depends on a clock or on
+chance: the same perceptions between the same steps give the same adaptations.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from types import MappingProxyType
+from typing import Literal, TypeAlias
+
+from planner_reactor.errors import InputError, nearest
+from planner_reactor.link.messages import Adaptation, Mode, Perception
+from planner_reactor.logic.domain import ActionSchema, Domain
+from planner_reactor.logic.formulas import Atom
+from planner_reactor.planner.beliefs import Beliefs
+from planner_reactor.planner.issuing import Draft, Issuer, UnderWay
+from planner_reactor.planner.model import Model, Segment
+from planner_reactor.planner.refinement import Context, Refinement, Situation, refine, root_schema
+from planner_reactor.planner.sensing import observer_of
+from planner_reactor.planner.structure import first_action
+from planner_reactor.planner.theory import Theory
+
+Cause: TypeAlias = Literal["normal", "forced"]
+StepKind: TypeAlias = Literal["refine", "relax", "reinstate", "watch"]
+FAILED_SITUATION, FAILED_ASSUMPTION, ACTIVE_STUB, QUIESCENT = range(4)
+MOST_REFUSALS = 3
+"""So often in a row the reactor may refuse what is planned for a situation."""
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """What one step did: worked on a `situation`, for the sake of an `assumption` (or ''), and what it issued."""
+
+    kind: StepKind
+    situation: str = ""
+    assumption: str = ""
+    cause: Cause | Literal["reinstated", ""] = ""
+    adaptations: tuple[Adaptation, ...] = ()
+    purpose: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Relaxation:
+    """One assumption given up or taken back. `adaptations` were issued for it; `done` when the last one was."""
+
+    assumption: str
+    cause: Cause | Literal["reinstated"]
+    adaptations: tuple[int, ...] = ()
+    done: bool = False
+
+
+class Planner:
+    """Plans for one goal of a domain. Give it perceptions, call `step` as often as there is time.
+
+    `relax` says which assumptions may be relaxed without need: all, those named, or none; with none, failed ones are
+    not relaxed either. `period_ms` replaces the domain's periods of monitors. With `fold` constant arguments become
+    part of a situation's name, else a situation has parameters and several instances at once.
+    """
+
+    def __init__(
+        self,
+        domain: Domain,
+        *,
+        goal: str | None = None,
+        relax: Literal["all", "none"] | tuple[str, ...] = "all",
+        period_ms: int | None = None,
+        stub_ms: int = 2000,
+        mode: Mode = "drain",
+        fold: bool = True,
+        epoch: int = 0,
+        patience: int | None = None,
+    ) -> None:
+        self.domain = domain
+        self.goal = _chosen_goal(domain, goal)
+        self.relax = _checked_relax(domain, relax)
+        self.beliefs = Beliefs(domain)
+        self.relaxations: list[Relaxation] = []
+        self.fold = fold
+        self.patience = patience
+        self._theory = Theory(domain)
+        self._root = root_schema(self._theory, self.goal)
+        root = Situation(self.goal)
+        self.model = Model(root)
+        self._root_context = Context((True,) * len(self._root.executability), frozenset(), frozenset({self.goal}))
+        self._issuer = Issuer(self.model, fold, stub_ms, period_ms, mode, epoch)
+        self._causes: dict[str, Cause] = {}
+        self._returning: dict[str, None] = {}
+        self._failures: Counter[str] = Counter()
+        self._draft: Draft | None = None
+        self._memory: dict[object, list[Refinement]] = {}
+        self._counts: Counter[str] = Counter()
+        self._start = self.model.new(root, self._root_context)
+
+    # ------------------------------------------------------------------------------------- what it tells
+
+    @property
+    def assumptions_in_use(self) -> tuple[str, ...]:
+        """Those that some issued segment rests on or brings in, the least likely first."""
+        return tuple(sorted(self.model.used(), key=self._unlikelihood))
+
+    @property
+    def relaxed(self) -> Mapping[str, Cause]:
+        """Assumptions given up, and whether by choice or because they failed."""
+        return MappingProxyType(self._causes)
+
+    @property
+    def expectation(self) -> tuple[str, ...]:
+        """The situations that are not yet as the ω-ideal reactor has them (E_t)."""
+        if self.model.root not in self.model.segments:
+            return (self.goal,) if not self._start.impossible else ()
+        return tuple(segment.name for segment in self.model if segment.is_open)
+
+    @property
+    def ideal(self) -> bool:
+        """Has everything been issued that the ω-ideal reactor needs?"""
+        return not self.expectation and not self.impossible
+
+    @property
+    def impossible(self) -> Mapping[str, str]:
+        """Situations for which there is no plan, and why."""
+        segments = [self._start, *self.model]
+        return {segment.name: segment.impossible for segment in segments if segment.impossible}
+
+    @property
+    def pending(self) -> tuple[int, ...]:
+        """The adaptations that the reactor has not answered yet."""
+        return tuple(self._issuer.under_way)
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What looks wrong about the segments as they are planned."""
+        found = (w for segment in self.model if segment.refinement for w in segment.refinement.warnings)
+        return tuple(dict.fromkeys(found))
+
+    def statistics(self) -> Mapping[str, int]:
+        """Counts: refinements, adaptations by outcome, relaxations by cause, perceptions by kind."""
+        return dict(self._counts)
+
+    # ------------------------------------------------------------------------------------------- one step
+
+    def step(self) -> Step | None:
+        """Do one short piece of work: refine a situation, issue an adaptation, or decide what to relax.
+
+        None if there is nothing to do until something is perceived.
+        """
+        if self._draft is None:
+            self._draft = self._next_draft()
+        if self._draft is not None:
+            return self._work_on(self._draft)
+        return self._watch() or self._reinstate() or self._relax_next()
+
+    def _next_draft(self) -> Draft | None:
+        """The most urgent situation that is not held back by an adaptation under way."""
+        if self.model.root not in self.model.segments:
+            return None if self._start.impossible else Draft(self._start, f"goal {self.goal}")
+        ready = [segment for segment in self.model if segment.is_open and segment.pending is None]
+        best = min(ready, key=lambda segment: (segment.urgency, segment.path), default=None)
+        return None if best is None else Draft(best, *self._purpose(best))
+
+    def _purpose(self, segment: Segment) -> tuple[str, str]:
+        if segment.is_stub:
+            return f"refine {segment.name}", ""
+        if self.relaxations and not self.relaxations[-1].done:
+            about = self.relaxations[-1]
+            verb = {"normal": "relax", "forced": "give up", "reinstated": "reinstate"}[about.cause]
+            return f"{verb} {about.assumption}: {segment.name}", about.assumption
+        return f"adapt {segment.name}", ""
+
+    def _work_on(self, draft: Draft) -> Step:
+        """Refine the next situation of a draft; if it is the last, issue the adaptation."""
+        situation = draft.waiting.pop(0) if draft.waiting else draft.segment.situation
+        if situation in draft.refinements:
+            return self._finish(draft)
+        refinement = self._refine(situation, self._context(situation, draft))
+        if refinement.tree is None and situation == draft.segment.situation:
+            return self._give_up(draft, refinement)
+        if refinement.tree is not None:
+            draft.refinements[situation] = refinement
+            draft.waiting = [*self._to_refine(draft, refinement), *draft.waiting]
+        if not draft.waiting:
+            return self._finish(draft)
+        return self._step("refine", draft)
+
+    def _to_refine(self, draft: Draft, refinement: Refinement) -> list[Situation]:
+        """Which new sub-situations must be concrete at once: what comes first; all, if there is a reaction now."""
+        assert refinement.tree is not None
+        new = [c.situation for c in refinement.children if c.situation not in self.model.segments]
+        if draft.segment.is_stub:
+            first = first_action(refinement.tree)
+            first_child = next((c for c in refinement.children if first and c.situation.schema == first.name), None)
+            new = [s for s in new if first_child and first and first.abstract and s == first_child.situation]
+        done = {*draft.refinements, *draft.waiting}
+        return [s for s in dict.fromkeys(new) if s not in done]
+
+    def _finish(self, draft: Draft) -> Step:
+        """Issue the adaptation that a draft amounts to, unless something that it touches is held."""
+        if self._issuer.is_held(self._issuer.touched_by(draft)):
+            self._draft = None
+            return self._step("refine", draft)
+        segment = draft.segment
+        below = [c.situation for c in segment.children]
+        adaptation = self._issuer.issue(draft, self.beliefs, self._held_back())
+        segment.stale, segment.urgency = False, QUIESCENT
+        below += [c.situation for c in segment.children]
+        self._mark(self.model.renew_contexts(below), QUIESCENT if not draft.assumption else self._urgency(draft))
+        self._draft = None
+        self._close_relaxation(adaptation)
+        if adaptation is None:
+            return self._step("refine", draft)
+        self._counts["issued"] += 1
+        return self._step("refine", draft, adaptation)
+
+    def _give_up(self, draft: Draft, refinement: Refinement) -> Step:
+        """There is no plan for a situation: say so, and leave it as it is."""
+        draft.segment.impossible = _why_impossible(refinement, draft.segment.name)
+        draft.segment.stale = False
+        self._draft = None
+        self._counts["impossible"] += 1
+        self._close_relaxation(None)
+        return self._step("refine", draft)
+
+    def _step(self, kind: StepKind, draft: Draft, *adaptations: Adaptation) -> Step:
+        cause: Cause | Literal["reinstated", ""] = ""
+        if draft.assumption and self.relaxations:
+            cause = self.relaxations[-1].cause
+        return Step(kind, draft.segment.name, draft.assumption, cause, adaptations, draft.purpose)
+
+    # ----------------------------------------------------------------------------------------- refinement
+
+    def _context(self, situation: Situation, draft: Draft) -> Context:
+        if situation == self.model.root:
+            return self._root_context
+        if situation == draft.segment.situation:
+            return draft.segment.context
+        return self.model.context(situation, draft.refinements.values())
+
+    def _refine(self, situation: Situation, context: Context) -> Refinement:
+        """The refinement, from memory if it was planned before under beliefs that say the same about it."""
+        key = (situation, context, self.beliefs.told)
+        relaxed = self.beliefs.relaxed
+        for known in self._memory.get(key, ()):
+            if not (known.required | known.presumed) & relaxed and known.missing <= relaxed:
+                return known
+        self._counts["refinements"] += 1
+        found = refine(
+            self._theory, self.beliefs, self._schema(situation), situation, context, fold=self.fold
+        )
+        self._memory.setdefault(key, []).append(found)
+        return found
+
+    def _schema(self, situation: Situation) -> ActionSchema:
+        return self._root if situation == self.model.root else self.domain.schemas[situation.schema]
+
+    # --------------------------------------------------------------------------------------- the outer loop
+
+    def _watch(self) -> Step | None:
+        """Monitors and perception requests that belong to no situation."""
+        asked = {}
+        for segment in [self._start, *self.model]:
+            for atom in segment.refinement.asked if segment.refinement else ():
+                action = observer_of(self.domain, atom)
+                if action is not None and self.beliefs.known(atom) is None:
+                    asked[atom] = action
+        if self.model.root not in self.model.segments and not asked:
+            return None
+        adaptation = self._issuer.reconcile(self.beliefs, self._held_back(), asked)
+        if adaptation is None:
+            return None
+        self._counts["issued"] += 1
+        return Step("watch", adaptations=(adaptation,), purpose=adaptation.purpose)
+
+    def _held_back(self) -> frozenset[str]:
+        """The assumptions that failed and may be reinstated."""
+        return frozenset(
+            name
+            for name, cause in self._causes.items()
+            if cause == "forced" and self.beliefs.assumption(name).reinstatable
+        )
+
+    def _reinstate(self) -> Step | None:
+        """Take back an assumption that holds again, once nothing else is under way."""
+        if not self._returning or self._issuer.under_way or self.expectation:
+            return None
+        name = next(iter(self._returning))
+        del self._returning[name]
+        self._causes.pop(name, None)
+        self.beliefs = self.beliefs.reinstated(name)
+        self._counts["reinstated"] += 1
+        self.relaxations.append(Relaxation(name, "reinstated"))
+        for segment in [self._start, *self.model]:
+            refinement = segment.refinement
+            if segment.impossible or (refinement is not None and name in refinement.missing):
+                segment.impossible = ""
+                self._mark([segment], QUIESCENT)
+        self._close_relaxation(None)
+        return Step("reinstate", assumption=name, cause="reinstated", purpose=f"reinstate {name}")
+
+    def _relax_next(self) -> Step | None:
+        """The reactor is ω-ideal: relax the assumption in use that is least likely to hold."""
+        if self.relax == "none" or self.expectation or self.model.root not in self.model.segments:
+            return None
+        names = [n for n in self.assumptions_in_use if n not in self.beliefs.relaxed and self._may_relax(n)]
+        if not names:
+            return None
+        self._relax(names[0], "normal", QUIESCENT)
+        return Step("relax", assumption=names[0], cause="normal", purpose=f"relax {names[0]}")
+
+    def _may_relax(self, name: str) -> bool:
+        return self.relax == "all" or name in self.relax or name.partition("(")[0] in self.relax
+
+    def _relax(self, name: str, cause: Cause, urgency: int) -> None:
+        """Plan without an assumption from now on."""
+        self._counts[cause] += 1
+        self._causes[name] = cause
+        self.beliefs = self.beliefs.without(name)
+        self.relaxations.append(Relaxation(name, cause))
+        self._draft = None
+        self._mark(self.model.using(name), urgency)
+        self._close_relaxation(None)
+
+    def _mark(self, segments: list[Segment], urgency: int) -> None:
+        """These have to be planned again."""
+        for segment in segments:
+            segment.stale = True
+            segment.impossible = ""
+            segment.urgency = min(segment.urgency, urgency) if segment.urgency else segment.urgency
+
+    def _urgency(self, draft: Draft) -> int:
+        return FAILED_ASSUMPTION if self._causes.get(draft.assumption) == "forced" else QUIESCENT
+
+    def _close_relaxation(self, adaptation: Adaptation | None) -> None:
+        """Keep the record of the relaxation under way; it is done when nothing open is left."""
+        if not self.relaxations or self.relaxations[-1].done:
+            return
+        record = self.relaxations[-1]
+        if adaptation is not None:
+            record = replace(record, adaptations=(*record.adaptations, adaptation.id))
+        self.relaxations[-1] = replace(record, done=not self.expectation)
+
+    def _unlikelihood(self, name: str) -> tuple[float, int, str]:
+        declared = self.beliefs.assumption(name)
+        return declared.likelihood, list(self.domain.assumptions).index(declared.name), name
+
+    # ---------------------------------------------------------------------------------------- perceptions
+
+    def perceive(self, perception: Perception) -> None:
+        """Take note of one perception; the next steps follow from it."""
+        self._counts[perception.kind] += 1
+        match perception.kind:
+            case "adaptation_applied":
+                self._answered(self._issuer.applied(int(perception.subject)), applied=True)
+            case "adaptation_refused" | "adaptation_timed_out":
+                self._answered(self._issuer.not_applied(int(perception.subject)), applied=False, why=perception.cause)
+            case "stub_trigger":
+                self._raise(perception.subject, ACTIVE_STUB)
+            case "situation_failure":
+                self._situation_failed(perception.subject)
+            case "assumption_failure":
+                self._assumption_failed(perception.subject)
+            case "assumption_holds":
+                self._assumption_holds(perception.subject)
+            case "information":
+                self._told(perception)
+            case "guard_kill" | "error":
+                pass  # completion is told by adaptation_applied; errors are counted
+
+    def _answered(self, flight: UnderWay | None, *, applied: bool, why: str = "") -> None:
+        if flight is None or applied or flight.segment is None:
+            return
+        self._draft = None
+        segment = self.model.segments.get(flight.segment, self._start)
+        segment.refusals += 1
+        segment.stale = True
+        if segment.refusals >= MOST_REFUSALS:
+            segment.impossible = f"the reactor did not apply it {segment.refusals} times ({why})"
+        self._mark(self.model.renew_contexts(c.situation for c in segment.children), QUIESCENT)
+
+    def _raise(self, name: str, urgency: int) -> None:
+        segment = self.model.named(name)
+        if segment is not None:
+            segment.urgency = min(segment.urgency or QUIESCENT, urgency)
+            if self._draft is not None and self._draft.segment is not segment and segment.is_open:
+                self._draft = None
+
+    def _situation_failed(self, name: str) -> None:
+        self._raise(name, FAILED_SITUATION)
+        self._failures[name] += 1
+        segment = self.model.named(name)
+        if self.patience and segment and self._failures[name] >= self.patience and self.relax != "none":
+            self._failures[name] = 0
+            doubtful = sorted(segment.required - self.beliefs.relaxed, key=self._unlikelihood)
+            if doubtful and not segment.stale:
+                self._relax(doubtful[0], "forced", FAILED_ASSUMPTION)
+
+    def _assumption_failed(self, name: str) -> None:
+        self._returning.pop(name, None)
+        known = name.partition("(")[0] in self.domain.assumptions
+        if known and self.relax != "none" and name not in self.beliefs.relaxed:
+            self._relax(name, "forced", FAILED_ASSUMPTION)
+
+    def _assumption_holds(self, name: str) -> None:
+        if name in self._held_back():
+            self._returning[name] = None
+
+    def _told(self, perception: Perception) -> None:
+        """An answer to a perception request: plan again what asked for it."""
+        *arguments, verdict = perception.values or ("",)
+        atom = Atom(perception.subject, tuple(arguments))
+        if verdict not in ("holds", "fails"):
+            return
+        self.beliefs = self.beliefs.learning(atom, holds=verdict == "holds")
+        self._issuer.requests.pop(atom, None)
+        self._draft = None
+        for segment in [self._start, *self.model]:
+            if segment.refinement is None or atom in segment.refinement.asked:
+                segment.impossible = ""
+                if segment.refinement is not None:
+                    self._mark([segment], QUIESCENT)
+
+
+def _why_impossible(refinement: Refinement, name: str) -> str:
+    reasons = []
+    if refinement.asked:
+        reasons.append("not known: " + ", ".join(map(str, refinement.asked)))
+    if refinement.missing:
+        reasons.append("not without " + " or ".join(sorted(refinement.missing)))
+    return f"no plan achieves {name}" + (f" ({'; '.join(reasons)})" if reasons else "")
+
+
+def _chosen_goal(domain: Domain, goal: str | None) -> str:
+    if goal is None and domain.goals:
+        return next(iter(domain.goals))
+    if goal not in domain.goals:
+        hint = nearest(goal or "", domain.goals) or f"the domain has {', '.join(domain.goals) or 'no goal'}"
+        raise InputError(f"{domain.file}: no goal {goal or ''}, {hint}")
+    return goal
+
+
+def _checked_relax(
+    domain: Domain, relax: Literal["all", "none"] | tuple[str, ...]
+) -> Literal["all", "none"] | tuple[str, ...]:
+    if isinstance(relax, tuple):
+        for name in relax:
+            if name.partition("(")[0] not in domain.assumptions:
+                hint = nearest(name, domain.assumptions) or f"known: {', '.join(domain.assumptions)}"
+                raise InputError(f"{name} is not an assumption of {domain.file}, {hint}")
+    return relax
+
+

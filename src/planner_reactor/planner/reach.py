@@ -1,0 +1,124 @@
+"""What can be reached at all, and how many actions it costs at least: bounds for the search.
+
+Nothing that is brought about is taken to be undone, and arguments are not looked at, so a bound never exceeds the
+truth; NEVER means that no plan exists. Where a relaxed assumption would have made a bound lower, it is noted as
+missing: if it is reinstated, another plan may win.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from typing import TypeAlias
+
+from planner_reactor.logic.domain import Rule
+from planner_reactor.planner.problem import Consulted, Problem
+from planner_reactor.planner.theory import Theory
+
+NEVER = 1 << 30
+_Bounds: TypeAlias = dict[str, int]
+
+
+@dataclass(slots=True)
+class Reach:
+    """Lower bounds for one problem; they are shared by all problems that have the same predicates to begin with."""
+
+    problem: Problem
+    consulted: Consulted
+    _here: _Bounds = field(init=False)
+    _best: _Bounds = field(init=False)
+
+    def __post_init__(self) -> None:
+        problem = self.problem
+        known = {truth.atom.predicate for truth in problem.truths}
+        known |= {atom.predicate for atom, holds in problem.beliefs.told if holds}
+        given = frozenset(known) | problem.theory.lasting_facts
+        self._here = _bounds(problem.theory, given, problem.forbidden, problem.beliefs.relaxed)
+        self._best = _bounds(problem.theory, given, problem.forbidden, frozenset())
+
+    def least(self, predicate: str) -> int:
+        """At least so many actions bring it about (what these need does not count)."""
+        found = self._here.get(predicate, NEVER)
+        if found > self._best.get(predicate, NEVER):
+            self.consulted.missing |= self._missing_for(predicate)
+        return found
+
+    def least_together(self, predicates: Iterable[str]) -> int:
+        """At least so many actions bring about all of these: those count that no action can help to two of."""
+        contributors = self.problem.theory.contributors
+        total = largest = 0
+        counted: set[str] = set()
+        for predicate in predicates:
+            cost = self.least(predicate)
+            largest = max(largest, cost)
+            if cost and not contributors[predicate] & counted:
+                counted |= contributors[predicate]
+                total += cost
+        return max(total, largest)
+
+    def _missing_for(self, predicate: str) -> set[str]:
+        """The relaxed assumptions on the ways that lead to the predicate."""
+        theory, beliefs = self.problem.theory, self.problem.beliefs
+        missing: set[str] = set()
+        seen = {predicate}
+        waiting = [predicate]
+        while waiting:
+            goal = waiting.pop()
+            bodies = []
+            for rule in theory.domain.rules_for.get(goal, ()):
+                missing |= beliefs.assume(rule.assumptions).missing
+                bodies.append(rule.body)
+            for schema, _ in theory.domain.producers.get(goal, ()):
+                missing |= beliefs.assume(theory.assumed(schema)).missing
+                bodies.append(schema.executability)
+            new = {c.atom.predicate for body in bodies for c in body} - seen
+            seen |= new
+            waiting.extend(sorted(new))
+        return missing
+
+
+def _bounds(theory: Theory, given: frozenset[str], forbidden: frozenset[str], relaxed: frozenset[str]) -> _Bounds:
+    key = (given, forbidden, relaxed)
+    found = theory.bounds.get(key)
+    if found is None:
+        if len(theory.bounds) > 10_000:
+            theory.bounds.clear()
+        found = theory.bounds[key] = _fixpoint(theory, given, forbidden, relaxed)
+    return found
+
+
+def _fixpoint(theory: Theory, given: frozenset[str], forbidden: frozenset[str], relaxed: frozenset[str]) -> _Bounds:
+    def holds(assumed: Iterable[str]) -> bool:
+        return not relaxed.intersection(assumed)
+
+    bounds = dict.fromkeys(given, 0)
+    rules = [r for r in theory.domain.rules if holds(a.predicate for a in r.assumptions)]
+    actions = [
+        schema
+        for schema in theory.domain.schemas.values()
+        if schema.name not in forbidden
+        and not schema.cleanup
+        and holds(a.predicate for a in theory.assumed(schema))
+    ]
+    changed = True
+    while changed:
+        changed = False
+        for rule in rules:
+            changed |= _lower(bounds, rule.head.predicate, _cost(theory, rule, bounds))
+        for schema in actions:
+            if all(c.atom.predicate in bounds for c in schema.executability):
+                for effect in schema.effects:
+                    changed |= _lower(bounds, effect.atom.predicate, 1)
+    return bounds
+
+
+def _cost(theory: Theory, rule: Rule, bounds: _Bounds) -> int:
+    return sum(max(bounds.get(c.atom.predicate, NEVER) for c in group) for group in theory.groups(rule))
+
+
+def _lower(bounds: _Bounds, predicate: str, cost: int) -> bool:
+    if cost >= min(bounds.get(predicate, NEVER), NEVER):
+        return False
+    bounds[predicate] = cost
+    return True
+

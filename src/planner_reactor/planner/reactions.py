@@ -1,0 +1,208 @@
+"""The text of a situation: from its refinement to a reaction in RS (R §8.3).
+
+    SIT[s]<k, x1, …> :; (~(body : SUCCEED[s, k]) : FAIL[s, k])
+
+Results go back by `(UPDATE[s, k, x] ; SUCCEED[s, k])`; sub-situations are asserted until they succeed; what cleans up
+after a failure stands before FAIL. A situation that is not refined yet has a stub. Where several instances of a
+situation may be on at once its loop is `::`, so that each is served. Names: `k` is the instance, `x1` to `xn` the
+arguments that are no constants, then the results in the order of the text.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+from planner_reactor.logic.formulas import Numeral, Term
+from planner_reactor.planner.plan import Parameter, Result
+from planner_reactor.planner.refinement import Refinement, Situation, situation_of
+from planner_reactor.planner.structure import (
+    Action,
+    Choice,
+    During,
+    InOrder,
+    Run,
+    Together,
+    Tree,
+    actions_of,
+)
+from planner_reactor.rs.printer import show
+from planner_reactor.rs.terms import (
+    STOP,
+    All,
+    Call,
+    Cond,
+    Disable,
+    Expression,
+    If,
+    Loop,
+    Not,
+    Number,
+    Process,
+    Schema,
+    Seq,
+    Spawn,
+    Symbol,
+    Text,
+    Variable,
+    cond,
+)
+
+REACTION = "P"
+"""The schema of which every reaction is a clause `P[n] = …`."""
+INSTANCE = "k"
+_OWN = re.compile(r"k|x\d+")
+_NAME = re.compile(r"[A-Za-z_]\w*")
+
+
+class Names:
+    """A name of its own for every situation: the action's, followed by its constants (`Lacks`, `a` → `LacksA`)."""
+
+    def __init__(self) -> None:
+        self._names: dict[Situation, str] = {}
+        self._taken: set[str] = set()
+
+    def __getitem__(self, situation: Situation) -> str:
+        name = self._names.get(situation)
+        if name is None:
+            parts = [str(a) for a in situation.arguments if a is not None]
+            wanted = situation.schema + "".join(part[:1].upper() + part[1:] for part in parts)
+            wanted = name = re.sub(r"\W", "_", wanted)
+            count = 1
+            while name in self._taken:
+                count += 1
+                name = f"{wanted}_{count}"
+            self._taken.add(name)
+            self._names[situation] = name
+        return name
+
+
+def reaction(refinement: Refinement, names: Names, *, fold: bool) -> Process:
+    """The reaction of a refined situation."""
+    assert refinement.tree is not None
+    return _Writing(refinement, names, fold).reaction(refinement.tree)
+
+
+def stub(situation: Situation, names: Names, period_ms: int) -> Process:
+    """The reaction of a situation that is not refined yet: it tells the planner, waits and fails (P4 of R §8.3)."""
+    name = Symbol(names[situation])
+    parameters = [f"x{n + 1}" for n in range(situation.arguments.count(None))]
+    waiting = Cond((Call("STUB", (name,)), Call("SUSPEND", (Number(period_ms),))))
+    body = Seq((waiting, Call("FAIL", (name, Variable(INSTANCE)))))
+    return Loop(Call("SIT", (name,), (INSTANCE, *parameters)), body)
+
+
+def root(situation: Situation, names: Names) -> Process:
+    """`STOP :; ASSERT[s]`: the goal, asserted for ever (P0)."""
+    return Loop(STOP, Call("ASSERT", (Symbol(names[situation]),)))
+
+
+def monitor(kind: str, assumption: str, period_ms: int) -> Process:
+    """`ASSUMONITOR[a, ms]` or `HOLDMONITOR[a, ms]`."""
+    return Call(kind, (_constant(assumption), Number(period_ms)))
+
+
+def request(action: Action, predicate: str, arguments: tuple[Term, ...]) -> Process:
+    """A perception request: run the sensing action, report what it says of the condition."""
+    about = (_constant(predicate), *(_constant(a) for a in arguments))
+    told = Call(_process_name(action.name), tuple(_constant(a) for a in action.arguments))
+    return If(told, Call("REPORT", (*about, Symbol("holds"))), Call("REPORT", (*about, Symbol("fails"))))
+
+
+def clause(label: int, process: Process) -> str:
+    """`P[n] = …` as text."""
+    return show(Schema(REACTION, (Number(label),), (), process))
+
+
+class _Writing:
+    """Writes one refinement; gives names to what is handed on."""
+
+    def __init__(self, refinement: Refinement, names: Names, fold: bool) -> None:
+        self._refinement = refinement
+        self._names = names
+        self._fold = fold
+        self._variables: dict[Term, str] = {}
+        for number, constant in enumerate(refinement.situation.arguments):
+            if constant is None:
+                self._variables[Parameter(number)] = f"x{len(self._variables) + 1}"
+        self._parameters = tuple(self._variables.values())
+
+    def reaction(self, tree: Tree) -> Process:
+        refinement = self._refinement
+        name = Symbol(self._names[refinement.situation])
+        self._name_results(tree)
+        instance = Variable(INSTANCE)
+        success: Process = Call("SUCCEED", (name, instance))
+        if refinement.outputs[0]:
+            outputs = tuple(self._expression(term) for term in refinement.outputs[0])
+            success = Seq((Call("UPDATE", (name, instance, *outputs)), success))
+        failure: Process = Call("FAIL", (name, instance))
+        if refinement.cleanup:
+            failure = Seq((*(self._call(action) for action in refinement.cleanup), failure))
+        body = Cond((Not(cond(*self._parts(tree), success)), failure))
+        head = Call("SIT", (name,), (INSTANCE, *self._parameters))
+        several = None in refinement.situation.arguments and not self._fold
+        return Spawn(head, body) if several else Loop(head, body)
+
+    def _name_results(self, tree: Tree) -> None:
+        """Number the results in the order of the text; an output has one name, whichever branch it comes from."""
+        same: dict[Term, Term] = {}
+        for outputs in self._refinement.outputs[1:]:
+            for first, other in zip(self._refinement.outputs[0], outputs, strict=True):
+                if isinstance(other, Result):
+                    same[other] = first
+        for action in actions_of(tree):
+            for result in action.results:
+                leader = same.get(result, result)
+                name = self._variables.setdefault(leader, f"x{len(set(self._variables.values())) + 1}")
+                self._variables[result] = name
+
+    def _parts(self, tree: Tree) -> Iterator[Process]:
+        if isinstance(tree, InOrder):
+            yield from (self._process(part) for part in tree.parts)
+        else:
+            yield self._process(tree)
+
+    def _process(self, tree: Tree) -> Process:
+        match tree:
+            case Run(action):
+                return self._call(action)
+            case InOrder(()):
+                return STOP
+            case InOrder(parts):
+                return cond(*(self._process(part) for part in parts))
+            case Together(parts):
+                return All(tuple(self._process(part) for part in parts))
+            case During(action, inner):
+                return Disable((self._call(action), self._process(inner)))
+            case Choice(test, then, otherwise):
+                return If(self._call(test), self._process(then), self._process(otherwise))
+
+    def _call(self, action: Action) -> Call:
+        results = tuple(self._variables[result] for result in action.results)
+        if not action.abstract:
+            arguments = tuple(self._expression(term) for term in action.arguments)
+            return Call(_process_name(action.name), arguments, results)
+        situation = situation_of(action, fold=self._fold)
+        given = [
+            self._expression(term)
+            for term, constant in zip(action.arguments, situation.arguments, strict=True)
+            if constant is None
+        ]
+        return Call("REASSERT", (Symbol(self._names[situation]), *given), results)
+
+    def _expression(self, term: Term) -> Expression:
+        name = self._variables.get(term)
+        return Variable(name) if name is not None else _constant(term)
+
+
+def _constant(term: Term) -> Expression:
+    """A constant as a symbol, or quoted where a symbol would be read as something else."""
+    if isinstance(term, Numeral):
+        return Number(term.value)
+    text = str(term)
+    return Symbol(text) if _NAME.fullmatch(text) and not _OWN.fullmatch(text) else Text(text)
+
+
+def _process_name(name: str) -> str:
+    return re.sub(r"\W", "_", name)

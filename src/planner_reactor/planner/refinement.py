@@ -1,0 +1,354 @@
+"""One situation made concrete: from an abstract action and what its callers grant to a composition of actions.
+
+`refine` searches for a plan of the action's expansions, plans what to do when a test fails whose failure says
+something (`otherwise`), finds the cleanup for a failure half-way, and works out what each sub-situation may count on.
+It depends on nothing but its arguments: the same situation, context and beliefs always give the same refinement, so
+that planning in increments and planning anew agree.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field, replace
+
+from planner_reactor.logic.domain import ActionSchema, Condition
+from planner_reactor.logic.formulas import Atom, Numeral, Term, variables
+from planner_reactor.planner.beliefs import Beliefs
+from planner_reactor.planner.plan import END, START, Link, Parameter, Plan, Step
+from planner_reactor.planner.problem import Consulted, Problem, Truth
+from planner_reactor.planner.search import Search
+from planner_reactor.planner.structure import Action, Tree, action_of, arrange, needed_before
+from planner_reactor.planner.theory import Theory
+from planner_reactor.planner.threats import Threats
+
+NESTED_TESTS = 3
+"""How many tests may stand in each other's else-branches."""
+
+
+@dataclass(frozen=True, slots=True)
+class Situation:
+    """An abstract action as a situation: constants are part of it, None stands for what it is asserted with."""
+
+    schema: str
+    arguments: tuple[Term | None, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Context:
+    """What a situation may count on, whoever asserts it.
+
+    `granted` tells for each executability condition whether it lasts while the situation does. `replayed` is None if
+    the situation is never asserted again after it succeeded, else the inputs that are then the same. `forbidden` are
+    the abstract actions above it.
+    """
+
+    granted: tuple[bool, ...] = ()
+    replayed: frozenset[int] | None = None
+    forbidden: frozenset[str] = frozenset()
+
+
+@dataclass(frozen=True, slots=True)
+class Child:
+    """A sub-situation as one call uses it."""
+
+    situation: Situation
+    arguments: tuple[Term, ...]
+    granted: tuple[bool, ...]
+    replayed: frozenset[int] | None
+
+
+@dataclass(frozen=True, slots=True)
+class Refinement:
+    """How a situation is made concrete; `tree` is None if no plan was found.
+
+    `required` are the assumptions that it rests on, `presumed` those that it only brings in, `missing` relaxed ones
+    that were looked for, `asked` conditions that nobody knows, `blocked` actions that stand too high to be used.
+    """
+
+    situation: Situation
+    tree: Tree | None
+    outputs: tuple[tuple[Term, ...], ...] = ()
+    children: tuple[Child, ...] = ()
+    cleanup: tuple[Action, ...] = ()
+    required: frozenset[str] = frozenset()
+    presumed: frozenset[str] = frozenset()
+    missing: frozenset[str] = frozenset()
+    asked: tuple[Atom, ...] = ()
+    blocked: frozenset[str] = frozenset()
+    warnings: tuple[str, ...] = ()
+
+
+def refine(
+    theory: Theory, beliefs: Beliefs, schema: ActionSchema, situation: Situation, context: Context, *, fold: bool
+) -> Refinement:
+    """The refinement of a situation of this abstract action. Without `fold` sub-situations keep their constants."""
+    return _Refining(theory, beliefs, schema, situation, context, fold).run()
+
+
+@dataclass(slots=True)
+class _Refining:
+    theory: Theory
+    beliefs: Beliefs
+    schema: ActionSchema
+    situation: Situation
+    context: Context
+    fold: bool
+    consulted: Consulted = field(default_factory=Consulted)
+    required: set[str] = field(default_factory=set)
+    presumed: set[str] = field(default_factory=set)
+    children: dict[Action, Child] = field(default_factory=dict)
+    outputs: list[tuple[Term, ...]] = field(default_factory=list)
+    cleanup: dict[Action, None] = field(default_factory=dict)
+    warnings: list[str] = field(default_factory=list)
+    numbered: int = 0  # steps of all plans so far
+
+    def run(self) -> Refinement:
+        problem = self._problem()
+        tree = self._solve(problem, NESTED_TESTS)
+        return Refinement(
+            self.situation,
+            tree,
+            tuple(self.outputs),
+            tuple(self.children.values()),
+            tuple(self.cleanup),
+            frozenset(self.required),
+            frozenset(self.presumed - self.required),
+            frozenset(self.consulted.missing),
+            tuple(self.consulted.asked),
+            frozenset(self.consulted.blocked),
+            tuple(self.warnings),
+        )
+
+    # ------------------------------------------------------------------------------------- the problem
+
+    def _problem(self) -> Problem:
+        schema = self.schema
+        given = {
+            variable: Parameter(n) if constant is None else constant
+            for n, (variable, constant) in enumerate(
+                zip(schema.inputs, self.situation.arguments, strict=True)
+            )
+        }
+        conditions = [_filled(condition.atom, given) for condition in schema.executability]
+        truths = [
+            Truth(atom, not lasts)
+            for atom, lasts in zip(conditions, self.context.granted, strict=True)
+            if not list(variables((atom,)))
+        ]
+        goals = [_filled(atom, given) for atom in schema.expansions]
+        problem = Problem(
+            self.theory,
+            self.beliefs,
+            tuple(dict.fromkeys(truths)),
+            tuple(goals),
+            self.context.forbidden | self.theory.alternatives.get(schema.name, frozenset()),
+            outputs=schema.outputs,
+            replayed=self.context.replayed,
+            variables=schema.size,
+            enduring=schema.name not in self.theory.domain.schemas,
+        )
+        kept = [t.atom for t in problem.truths if t.atom not in goals and self._is_kept(problem, given, t)]
+        return replace(problem, goals=(*goals, *kept), kept=len(kept))
+
+    def _is_kept(self, problem: Problem, given: dict[int, Term], truth: Truth) -> bool:
+        """Must this still hold at the end? It could be ended, and the action does not say that it ends it."""
+        if truth.lost or truth.atom.predicate not in self.theory.changing:
+            return False
+        if not self.beliefs.lasting(truth.atom).holds:
+            return False
+        scratch = Plan()
+        step = scratch.add(self.schema)
+        for variable, term in given.items():
+            scratch.bindings.bind(step.offset + variable, term)
+        return not Threats(problem, scratch).ends(step, truth.atom)
+
+    # --------------------------------------------------------------------------------------- its plan
+
+    def _solve(self, problem: Problem, depth: int) -> Tree | None:
+        plan = Search(problem, Plan(first=self.numbered), self.consulted).solve()
+        if plan is None:
+            return None
+        self.numbered += len(plan.steps)
+        self._count(problem, plan)
+        self.outputs.append(tuple(plan.bindings.walk(term) for term in problem.outputs))
+        otherwise: dict[int, Tree] = {}
+        for step in plan.steps:
+            if step.schema.otherwise and depth:
+                tree = self._solve(_after_failure(problem, plan, step), depth - 1)
+                if tree is not None:
+                    otherwise[step.number] = tree
+        for step in plan.steps:
+            self._look_after(problem, plan, step, otherwise)
+        return arrange(plan, otherwise)
+
+    def _count(self, problem: Problem, plan: Plan) -> None:
+        """Note the assumptions on which the plan rests, and those that it only brings in."""
+        for use in plan.uses:
+            (self.required if use.required else self.presumed).add(use.assumption)
+        for link in plan.links:
+            if link.atom.predicate in self.theory.domain.persistences and link.producer != START and not link.lost:
+                lasting = self.beliefs.lasting(plan.bindings.ground(link.atom))
+                if problem.enduring and link.consumer == END:
+                    continue
+                abstract = link.consumer != END and plan.step(link.consumer).schema.abstract
+                if lasting.used and not self._is_fresh(plan, link, abstract=abstract):
+                    (self.presumed if abstract else self.required).update(lasting.used)
+
+    def _is_fresh(self, plan: Plan, link: Link, *, abstract: bool) -> bool:
+        """Is it used as soon as it is brought about, so that it need not last?"""
+        if link.maintained:
+            return True
+        instant = link.consumer != END and plan.step(link.consumer).schema.senses
+        if link.throughout and not instant:
+            return False
+        return not any(
+            not step.schema.senses
+            and step.number not in (link.producer, link.consumer)
+            and not plan.is_before(step.number, link.producer)
+            and (link.consumer == END or not plan.is_before(link.consumer, step.number))
+            for step in plan.steps
+        )
+
+    def _look_after(self, problem: Problem, plan: Plan, step: Step, otherwise: dict[int, Tree]) -> None:
+        """What one step means for others: a sub-situation, a cleanup, a test that may fail for ever."""
+        if step.schema.abstract:
+            self._add_child(plan, step, otherwise)
+        self._add_cleanup(problem, plan, step)
+        if step.schema.senses and step.number not in otherwise and not _has_achiever(plan, step):
+            self.warnings.append(
+                f"{step.schema.name} in {self.situation.schema}: nothing there can change what it tests, "
+                f"so that it may fail for ever"
+            )
+
+    def _add_child(self, plan: Plan, step: Step, otherwise: dict[int, Tree]) -> None:
+        action = action_of(plan, step.number)
+        lost = {link.condition for link in plan.links if link.consumer == step.number and link.lost}
+        granted = tuple(n not in lost for n in range(len(step.schema.executability)))
+        fails = any(
+            not other.schema.abstract
+            and other.number != step.number
+            and other.number not in otherwise
+            and not plan.is_before(other.number, step.number)
+            for other in plan.steps
+        )
+        again = self.context.replayed
+        same = frozenset(
+            n
+            for n, argument in enumerate(action.arguments)
+            if isinstance(argument, Parameter) and (fails or (again is not None and argument.number in again))
+        )
+        replayed = None if again is None and not fails else same
+        self.children[action] = Child(
+            situation_of(action, fold=self.fold), action.arguments, granted, replayed
+        )
+
+    # -------------------------------------------------------------------------------- failing half-way
+
+    def _add_cleanup(self, problem: Problem, plan: Plan, step: Step) -> None:
+        """If the step ends what held at the start, a failure from then on must bring it about again."""
+        threats = Threats(problem, plan)
+        for truth in problem.truths:
+            if not truth.lost and threats.ends(step, truth.atom):
+                for action in self._cleanups(plan, step, truth.atom):
+                    self.cleanup.setdefault(action)
+
+    def _cleanups(self, plan: Plan, step: Step, atom: Atom) -> Iterator[Action]:
+        for schema, effect in self.theory.domain.producers.get(atom.predicate, ()):
+            if schema.cleanup:
+                mark = plan.mark()
+                cleaning = plan.add(schema)
+                if plan.bindings.unify(effect.atom.shifted(cleaning.offset).arguments, atom.arguments):
+                    arguments = self._matched(plan, step, cleaning)
+                    if all(isinstance(a, str | Numeral | Parameter) for a in arguments):
+                        yield Action(schema.name, False, arguments)
+                plan.undo(mark)
+
+    def _matched(self, plan: Plan, step: Step, cleaning: Step) -> tuple[Term, ...]:
+        """The arguments of a cleanup for what the step has brought about."""
+        for condition in cleaning.schema.executability:
+            wanted = condition.atom.shifted(cleaning.offset)
+            for effect in step.effects():
+                mark = plan.bindings.mark()
+                if effect.atom.predicate == wanted.predicate:
+                    if plan.bindings.unify(wanted.arguments, effect.atom.arguments):
+                        break
+                    plan.bindings.undo(mark)
+        return plan.arguments(cleaning)
+
+
+def situation_of(action: Action, *, fold: bool) -> Situation:
+    """The situation that an abstract action asserts; with `fold` constants become part of it."""
+    constants = tuple(a if fold and isinstance(a, str | Numeral) else None for a in action.arguments)
+    return Situation(action.name, constants)
+
+
+def _after_failure(problem: Problem, plan: Plan, test: Step) -> Problem:
+    """What is to be planned if the test aborts: the same goals, from what holds then."""
+    threats = Threats(problem, plan)
+    before = [plan.step(n) for n in needed_before(plan, test.number)]
+    ground = plan.bindings.ground
+    truths = [t for t in problem.truths if not any(threats.ends(step, t.atom) for step in before)]
+    for step in before:
+        later = [other for other in before if other is not step and not plan.is_before(other.number, step.number)]
+        for effect in step.effects():
+            atom = ground(effect.atom)
+            if not any(threats.ends(other, atom) for other in later):
+                truths.append(Truth(atom, not problem.beliefs.lasting(atom).holds))
+    truths.extend(Truth(ground(effect.atom.shifted(test.offset))) for effect in test.schema.otherwise)
+    named = [t for t in truths if not list(variables((t.atom,)))]
+    barred = problem.barred | {(test.schema.name, plan.arguments(test))}
+    return replace(problem, truths=tuple(dict.fromkeys(named)), barred=barred)
+
+
+def _has_achiever(plan: Plan, test: Step) -> bool:
+    """Does something that the test looks at come from another step, so that a retry may change it?"""
+    return not test.schema.executability or any(
+        link.consumer == test.number and link.producer not in (START, END) for link in plan.links
+    )
+
+
+def _filled(atom: Atom, given: dict[int, Term]) -> Atom:
+    return Atom(atom.predicate, tuple(given.get(a, a) if type(a) is int else a for a in atom.arguments))
+
+
+def root_schema(theory: Theory, goal_name: str) -> ActionSchema:
+    """The goal as an abstract action without parameters: from the facts that may change to what is wanted (R (13)).
+
+    If facts say for which things the antecedent holds, the goal is meant for each of them, else for whatever an
+    action brings.
+    """
+    goal = theory.domain.goals[goal_name]
+    cases = list(_known_cases(theory, goal.antecedent))
+    wanted: Iterable[Atom]
+    if cases and goal.antecedent:
+        wanted = dict.fromkeys(_filled(atom, case) for case in cases for atom in goal.consequent)
+    else:
+        wanted = (*goal.antecedent, *goal.consequent)
+    names = tuple(f"x{n}" for n in range(goal.size))
+    facts = [fact for predicate in theory.domain.facts if predicate in theory.changing
+             for fact in theory.domain.facts[predicate]]  # fmt: skip
+    return ActionSchema(
+        goal.name,
+        names,
+        executability=tuple(Condition(fact) for fact in facts),
+        expansions=tuple(wanted),
+        place=goal.place,
+    )
+
+
+def _known_cases(theory: Theory, atoms: tuple[Atom, ...]) -> Iterator[dict[int, Term]]:
+    """The ways in which lasting facts satisfy the atoms."""
+    cases: list[dict[int, Term]] = [{}]
+    for atom in atoms:
+        facts = theory.domain.facts.get(atom.predicate, ()) if atom.predicate not in theory.changing else ()
+        found = []
+        for case in cases:
+            for fact in facts:
+                extended = dict(case)
+                if all(
+                    extended.setdefault(a, b) == b if type(a) is int else a == b
+                    for a, b in zip(atom.arguments, fact.arguments, strict=True)
+                ):
+                    found.append(extended)
+        cases = found
+    yield from cases

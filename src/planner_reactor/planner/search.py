@@ -1,0 +1,185 @@
+"""The search for the partial plan with the fewest steps: iterative deepening over the ways to support conditions.
+
+Conditions of a rule that share no variable are planned apart, each with the fewest steps, so that the cost of a
+hundred independent ones is the sum and not the product; what a group was found to cost is remembered. Ties go to what
+`supports` tries first. A search that is not done after `NODES` choices gives up.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
+from typing import TypeAlias
+
+from planner_reactor.logic.allen import NAMED
+from planner_reactor.logic.formulas import variables
+from planner_reactor.planner.plan import BEFORE, END, Plan, Result, Unnamed
+from planner_reactor.planner.problem import Consulted, Goal, Problem
+from planner_reactor.planner.reach import NEVER, Reach
+from planner_reactor.planner.supports import Supports, Way
+from planner_reactor.planner.theory import DEEPEST
+from planner_reactor.planner.threats import Threats
+
+NODES = 20_000
+"""How many choices one search may try."""
+
+Agenda: TypeAlias = "tuple[Goal, Agenda] | None"
+_Choice: TypeAlias = tuple[tuple[int, ...], Agenda, Iterator[Way]]
+
+
+@dataclass(slots=True)
+class Search:
+    """One search. `solve` once; `consulted` then tells what it would have needed beside what the plan uses."""
+
+    problem: Problem
+    plan: Plan = field(default_factory=Plan)
+    consulted: Consulted = field(default_factory=Consulted)
+    nodes: int = 0
+    _supports: Supports = field(init=False)
+    _threats: Threats = field(init=False)
+    _reach: Reach = field(init=False)
+    _cheapest: int = NEVER  # of what was found too dear
+
+    def __post_init__(self) -> None:
+        self.plan.variables = max(self.plan.variables, self.problem.variables)
+        self._supports = Supports(self.problem, self.plan, self.consulted)
+        self._threats = Threats(self.problem, self.plan)
+        self._reach = Reach(self.problem, self.consulted)
+
+    def solve(self) -> Plan | None:
+        """The plan, or None if there is none (or none was found within `NODES` choices)."""
+        goals = [Goal(atom, NAMED["equal"], END, n) for n, atom in enumerate(self.problem.goals)]
+        return self.plan if self._deepen(goals) and self._threats.resolve() else None
+
+    # ------------------------------------------------------------------------------- control of the search
+
+    def _deepen(self, goals: list[Goal]) -> bool:
+        """Extend the plan so that the goals hold, trying with ever more steps."""
+        agenda = _chained(goals, None)
+        steps = self._least(goals)
+        outer = self._cheapest
+        while steps < NEVER and self.nodes < NODES:
+            self._cheapest = NEVER
+            if self._depth_first(agenda, steps):
+                self._cheapest = outer
+                return True
+            steps = self._cheapest
+        self._cheapest = outer
+        return False
+
+    def _depth_first(self, agenda: Agenda, allowed: int) -> bool:
+        plan = self.plan
+        links, steps = len(plan.links), len(plan.steps)
+        stack: list[_Choice] = []
+        while True:
+            if agenda is not None:
+                goal, rest = agenda
+                may_add = len(plan.steps) < steps + allowed
+                if not may_add and goal.atom.predicate in self.problem.theory.achievable and allowed < DEEPEST:
+                    self._cheapest = min(self._cheapest, allowed + 1)
+                stack.append((plan.mark(), rest, self._supports.ways(goal, may_add=may_add)))
+            elif self._is_complete(steps) and self._threats.resolve(links, steps):
+                return True
+            while stack:
+                mark, rest, ways = stack[-1]
+                plan.undo(mark)
+                found, agenda = self._next(rest, ways, steps, allowed)
+                if found:
+                    break
+                stack.pop()
+            else:
+                return False
+
+    def _next(self, rest: Agenda, ways: Iterator[Way], steps: int, allowed: int) -> tuple[bool, Agenda]:
+        """What is to be done after the next way that is possible and not too dear."""
+        plan = self.plan
+        mark = plan.mark()
+        for way in ways:
+            self.nodes += 1
+            if self.nodes > NODES:
+                break
+            added = way()
+            if added is not None:
+                least, agenda = self._apart(added, rest, steps + allowed)
+                needed = len(plan.steps) - steps + max(least, self._least(_goals(agenda)))
+                if needed <= allowed:
+                    return True, agenda
+                self._cheapest = min(self._cheapest, needed)
+            plan.undo(mark)
+        return False, None
+
+    def _apart(self, added: list[Goal], rest: Agenda, most: int) -> tuple[int, Agenda]:
+        """Solve groups of new goals that share no variable at once, if they can be afforded.
+
+        The least number of steps that they cost beyond those in the plan, and what remains to be done.
+        """
+        groups, others = self._groups(added)
+        if len(groups) < 2:
+            return 0, _chained(added, rest)
+        least = sum(self._least(group) for group in groups)
+        if len(self.plan.steps) + least <= most:
+            if not all(self._deepen(group) for group in groups):
+                return NEVER, rest
+            least = 0
+        return least, _chained(others, rest)
+
+    def _is_complete(self, steps: int) -> bool:
+        """Is everything named that must be, and does every result come before its use?"""
+        plan, problem = self.plan, self.problem
+        walk = plan.bindings.walk
+        if any(_is_nameless(walk(term)) for term in problem.outputs):
+            return False
+        if any(walk(one) == walk(other) for one, other in plan.distinct) or self._threats.spoils_itself():
+            return False
+        for step in plan.steps[steps:]:
+            arguments = plan.arguments(step)
+            if (step.schema.name, arguments) in problem.barred:
+                return False
+            for argument in arguments:
+                if _is_nameless(argument):
+                    return False
+                if isinstance(argument, Result) and argument.step >= plan.first:
+                    known = plan.network.relation(argument.step, step.number)
+                    if known & ~BEFORE and not plan.order(argument.step, step.number, BEFORE):
+                        return False
+        return True
+
+    def _least(self, goals: Iterable[Goal]) -> int:
+        """At least so many more steps are needed for all of these goals."""
+        effects = self.problem.theory.effects
+        there = {predicate for step in self.plan.steps for predicate in effects[step.schema.name]}
+        wanted = dict.fromkeys(goal.atom.predicate for goal in goals)
+        return self._reach.least_together(predicate for predicate in wanted if predicate not in there)
+
+    def _groups(self, goals: list[Goal]) -> tuple[list[list[Goal]], list[Goal]]:
+        """The goals with open variables in groups that share none, and those without open variables."""
+        groups: list[tuple[set[int], list[Goal]]] = []
+        others = []
+        for goal in goals:
+            own = set(variables((self.plan.bindings.ground(goal.atom),)))
+            joined = [group for group in groups if group[0] & own]
+            if not own:
+                others.append(goal)
+            elif not joined:
+                groups.append((own, [goal]))
+            else:
+                joined[0][0].update(own, *(other[0] for other in joined[1:]))
+                joined[0][1].extend([*(g for other in joined[1:] for g in other[1]), goal])
+                groups = [group for group in groups if group not in joined[1:]]
+        return [group for _, group in groups], others
+
+
+def _is_nameless(term: object) -> bool:
+    return type(term) is int or isinstance(term, Unnamed)
+
+
+def _chained(goals: list[Goal], rest: Agenda) -> Agenda:
+    for goal in reversed(goals):
+        rest = (goal, rest)
+    return rest
+
+
+def _goals(agenda: Agenda) -> Iterator[Goal]:
+    while agenda is not None:
+        goal, agenda = agenda
+        yield goal

@@ -1,0 +1,231 @@
+"""From a partial order of steps to a composition of processes (R §7.2).
+
+What must end before the other starts is composed in sequence, what nothing orders side by side, what must last
+through another goes beside it and ends with it. A test whose failure is planned for comes as early as it can, and all
+that is not needed before it stands in its branch. An order that no nesting of these expresses is made stricter:
+first what waits for nothing, then the rest.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TypeAlias
+
+from planner_reactor.logic.allen import inverse
+from planner_reactor.logic.formulas import Term
+from planner_reactor.planner.plan import BEFORE, CONTAINS, Plan, Result
+
+
+@dataclass(frozen=True, slots=True)
+class Action:
+    """A step of a finished plan: `arguments` are constants, `results` what it returns."""
+
+    name: str
+    abstract: bool
+    arguments: tuple[Term, ...] = ()
+    results: tuple[Result, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Run:
+    """One action."""
+
+    action: Action
+
+
+@dataclass(frozen=True, slots=True)
+class InOrder:
+    parts: tuple[Tree, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Together:
+    """All of them are needed, in any order."""
+
+    parts: tuple[Tree, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class During:
+    """The action goes on for as long as the rest takes."""
+
+    action: Action
+    inner: Tree
+
+
+@dataclass(frozen=True, slots=True)
+class Choice:
+    """If the test stops, `then`, else `otherwise`."""
+
+    test: Action
+    then: Tree
+    otherwise: Tree
+
+
+Tree: TypeAlias = Run | InOrder | Together | During | Choice
+NOTHING = InOrder(())
+
+
+def arrange(plan: Plan, otherwise: Mapping[int, Tree]) -> Tree:
+    """The steps of a plan as a composition; `otherwise` holds what to do if a test (by its number) fails."""
+    return _Order(plan).arrange(tuple(step.number for step in plan.steps), otherwise)
+
+
+def action_of(plan: Plan, number: int) -> Action:
+    """A step of a finished plan as an action."""
+    step = plan.step(number)
+    results = tuple(Result(number, n) for n in range(len(step.schema.outputs)))
+    return Action(step.schema.name, step.schema.abstract, plan.arguments(step), results)
+
+
+def actions_of(tree: Tree) -> Iterator[Action]:
+    """The actions of a composition in the order of its text."""
+    waiting: list[Tree] = [tree]
+    while waiting:
+        match waiting.pop():
+            case Run(action):
+                yield action
+            case InOrder(parts) | Together(parts):
+                waiting.extend(reversed(parts))
+            case During(action, inner):
+                yield action
+                waiting.append(inner)
+            case Choice(test, then, otherwise):
+                yield test
+                waiting.extend((otherwise, then))
+
+
+def first_action(tree: Tree) -> Action | None:
+    """With what a composition begins; of several actions that begin together, the first in the text."""
+    return next(actions_of(tree), None)
+
+
+def needed_before(plan: Plan, number: int) -> tuple[int, ...]:
+    """The steps that have ended when this one starts, in every order of the plan."""
+    return tuple(step.number for step in plan.steps if step.number != number and plan.is_before(step.number, number))
+
+
+class _Order:
+    """The order of a plan's steps as sets of bits."""
+
+    def __init__(self, plan: Plan) -> None:
+        self._steps = {step.number: action_of(plan, step.number) for step in plan.steps}
+        self.after = dict.fromkeys(self._steps, 0)
+        self._inside = dict.fromkeys(self._steps, 0)
+        for first, second, relation in plan.network.edges():
+            if isinstance(first, int) and isinstance(second, int) and {first, second} <= self._steps.keys():
+                self._note(first, second, relation)
+                self._note(second, first, inverse(relation))
+
+    def _note(self, first: int, second: int, relation: int) -> None:
+        if relation & ~BEFORE == 0:
+            self.after[first] |= 1 << second
+        elif relation & ~CONTAINS == 0:
+            self._inside[first] |= 1 << second
+
+    def arrange(self, numbers: Sequence[int], otherwise: Mapping[int, Tree]) -> Tree:
+        """A composition of these steps (at least once each)."""
+        tests = [n for n in numbers if n in otherwise]
+        if not tests:
+            return self._composed(self._blocks(numbers))
+        test = min(tests, key=lambda n: (len(self._before(n, numbers)), n))
+        first = self._before(test, numbers)
+        rest = [n for n in numbers if n != test and n not in first]
+        choice = Choice(self._steps[test], self.arrange(rest, otherwise), otherwise[test])
+        return _in_order([self.arrange(first, {}), choice])
+
+    def _before(self, number: int, numbers: Sequence[int]) -> list[int]:
+        return [n for n in numbers if self.after[n] >> number & 1]
+
+    # ------------------------------------------------------------------------------- series and parallel
+
+    def _blocks(self, numbers: Sequence[int]) -> list[_Block]:
+        """The steps, each with those that must happen while it lasts."""
+        present = _bits(numbers)
+        inner = 0
+        for n in numbers:
+            inner |= self._inside[n]
+        blocks = []
+        for n in numbers:
+            if not inner >> n & 1:
+                inside = [m for m in numbers if self._inside[n] >> m & 1]
+                tree: Tree = Run(self._steps[n])
+                if inside:
+                    tree = During(self._steps[n], self._composed(self._blocks(inside)))
+                members = _bits([n, *inside])
+                after = 0
+                for m in (n, *inside):
+                    after |= self.after[m] & present & ~members
+                blocks.append(_Block(tree, members, after))
+        return blocks
+
+    def _composed(self, blocks: list[_Block]) -> Tree:
+        if len(blocks) < 2:
+            return blocks[0].tree if blocks else NOTHING
+        parallel = _components(blocks)
+        if len(parallel) > 1:
+            return Together(tuple(self._composed(part) for part in parallel))
+        ranked = sorted(blocks, key=lambda block: -block.after.bit_count())
+        for n in range(1, len(ranked)):
+            rest = _members(ranked[n:])
+            if all(rest & ~block.after == 0 for block in ranked[:n]):
+                early = [block for block in blocks if block in ranked[:n]]
+                late = [block for block in blocks if block in ranked[n:]]
+                return _in_order([self._composed(early), self._composed(late)])
+        return self._by_levels(blocks)
+
+    def _by_levels(self, blocks: list[_Block]) -> Tree:
+        """Not series-parallel: first what waits for nothing, then the rest."""
+        waiting = 0
+        for block in blocks:
+            waiting |= block.after
+        early = [block for block in blocks if not block.members & waiting]
+        late = [block for block in blocks if block.members & waiting]
+        if not early or not late:
+            return Together(tuple(block.tree for block in blocks))
+        return _in_order([self._composed(early), self._composed(late)])
+
+
+@dataclass(frozen=True, slots=True)
+class _Block:
+    """A composition that is ordered as one; sets of steps are bits."""
+
+    tree: Tree
+    members: int
+    after: int
+
+
+def _components(blocks: list[_Block]) -> list[list[_Block]]:
+    """The blocks in groups between which nothing is ordered, each in the order given."""
+    group = {n: n for n in range(len(blocks))}
+    for n, block in enumerate(blocks):
+        for m, other in enumerate(blocks):
+            if group[n] != group[m] and (block.after & other.members or other.after & block.members):
+                old, new = max(group[n], group[m]), min(group[n], group[m])
+                group = {k: new if g == old else g for k, g in group.items()}
+    found: dict[int, list[_Block]] = {}
+    for n, block in enumerate(blocks):
+        found.setdefault(group[n], []).append(block)
+    return list(found.values())
+
+
+def _in_order(parts: list[Tree]) -> Tree:
+    flat: list[Tree] = []
+    for part in parts:
+        flat.extend(part.parts if isinstance(part, InOrder) else [part])
+    return flat[0] if len(flat) == 1 else InOrder(tuple(flat))
+
+
+def _members(blocks: list[_Block]) -> int:
+    found = 0
+    for block in blocks:
+        found |= block.members
+    return found
+
+
+def _bits(numbers: Sequence[int]) -> int:
+    found = 0
+    for n in numbers:
+        found |= 1 << n
+    return found

@@ -1,0 +1,127 @@
+"""What can be said of a domain once and for all, to make chaining fast (nothing here depends on a state).
+
+`ends` are the predicates that an action may put an end to, by the exclusions of the causal theory; `groups` the parts
+of a rule's body that share no variable; `contributors` the actions that can help to bring a predicate about; `alike` the constants that a domain treats all in the same way, so that what is planned for one serves for another.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable
+
+from planner_reactor.logic.domain import ActionSchema, Condition, Domain, Rule
+from planner_reactor.logic.formulas import Atom, variables
+
+DEEPEST = 40
+"""How many rules may support each other in a chain."""
+
+
+class Theory:
+    """The static side of one domain."""
+
+    def __init__(self, domain: Domain) -> None:
+        self.domain = domain
+        self.effects = {s.name: frozenset(e.atom.predicate for e in s.effects) for s in domain.schemas.values()}
+        self.ends = {s.name: self._ended_by(s) for s in domain.schemas.values()}
+        self.achievable = frozenset().union(*self.effects.values())
+        self.changing = frozenset().union(*self.ends.values())
+        self.alike = _alike(domain)
+        self.lasting_facts = frozenset(domain.facts) - self.changing
+        """The predicates of facts that no action can end, so that they hold everywhere."""
+        self.alternatives = {s.name: self._alternatives(s) for s in domain.schemas.values()}
+        """For each abstract action the others that do all that it does: they stand beside it, never below."""
+        self.contributors = _contributors(domain)
+        self.bounds: dict[object, dict[str, int]] = {}
+        self._assumed = {
+            s.name: tuple(a for a in s.applicability if a.predicate in domain.assumptions)
+            for s in domain.schemas.values()
+        }
+        self._groups: dict[int, tuple[tuple[Condition, ...], ...]] = {}
+
+    def _alternatives(self, schema: ActionSchema) -> frozenset[str]:
+        own = self.effects[schema.name]
+        return frozenset(
+            other.name
+            for other in self.domain.schemas.values()
+            if other is not schema and other.abstract and own and own <= self.effects[other.name]
+        )
+
+    def _ended_by(self, schema: ActionSchema) -> frozenset[str]:
+        return frozenset(
+            other.predicate
+            for predicate in self.effects[schema.name]
+            for _, _, other in self.domain.excluding.get(predicate, ())
+        )
+
+    def may_end(self, schema: ActionSchema, predicate: str) -> bool:
+        """Could the action end something with this predicate?"""
+        return predicate in self.ends.get(schema.name, ())
+
+    def assumed(self, schema: ActionSchema) -> tuple[Atom, ...]:
+        """The assumptions without which the action may not be selected."""
+        return self._assumed[schema.name]
+
+    def groups(self, rule: Rule) -> tuple[tuple[Condition, ...], ...]:
+        """The conditions of a rule in groups that share no variable but those of its head, in order."""
+        found = self._groups.get(id(rule))
+        if found is None:
+            found = self._groups[id(rule)] = _grouped(rule.body, frozenset(variables((rule.head,))))
+        return found
+
+
+def _grouped(body: tuple[Condition, ...], bound: frozenset[int]) -> tuple[tuple[Condition, ...], ...]:
+    leader: dict[int, int] = {}  # variable → number of its group
+    groups: dict[int, list[Condition]] = {}
+    for n, condition in enumerate(body):
+        own = [v for v in variables((condition.atom,)) if v not in bound]
+        joined = sorted({leader[v] for v in own if v in leader})
+        target = joined[0] if joined else n
+        groups.setdefault(target, [])
+        for other in joined[1:]:
+            groups[target].extend(groups.pop(other))
+            leader.update({v: target for v, group in leader.items() if group == other})
+        groups[target].append(condition)
+        leader.update(dict.fromkeys(own, target))
+    return tuple(tuple(groups[n]) for n in sorted(groups))
+
+
+def _contributors(domain: Domain) -> dict[str, frozenset[str]]:
+    """For each predicate, the actions that can help to bring it about, directly or through rules."""
+    found = {p: {schema.name for schema, _ in producers} for p, producers in domain.producers.items()}
+    changed = True
+    while changed:
+        changed = False
+        for rule in domain.rules:
+            helpers = found.setdefault(rule.head.predicate, set())
+            before = len(helpers)
+            for condition in rule.body:
+                helpers |= found.get(condition.atom.predicate, set())
+            changed |= len(helpers) > before
+    known = {p: frozenset(names) for p, names in found.items()}
+    return defaultdict(frozenset, known)
+
+
+def _alike(domain: Domain) -> frozenset[str]:
+    """The symbols that stand only in the bodies of rules: no schema, fact, head or exclusion tells them apart."""
+    special: set[str] = set()
+    common: set[str] = set()
+    for schema in domain.schemas.values():
+        special.update(_symbols((*schema.presumes, *schema.applicability, *schema.expansions)))
+        special.update(_symbols(c.atom for c in schema.executability))
+        special.update(_symbols(e.atom for e in (*schema.effects, *schema.otherwise)))
+    for rule in domain.rules:
+        special.update(_symbols((rule.head, *rule.assumptions)))
+        special.update(t for pair in rule.distinct for t in pair if isinstance(t, str))
+        common.update(_symbols(c.atom for c in rule.body))
+    for exclusion in domain.exclusions:
+        special.update(_symbols((exclusion.first, exclusion.second, *exclusion.given)))
+        special.update(t for pair in exclusion.distinct for t in pair if isinstance(t, str))
+    for persistences in domain.persistences.values():
+        special.update(_symbols(a for p in persistences for a in (p.atom, *p.assumptions)))
+    special.update(_symbols(fact for facts in domain.facts.values() for fact in facts))
+    special.update(_symbols(a for goal in domain.goals.values() for a in (*goal.antecedent, *goal.consequent)))
+    return frozenset(common - special)
+
+
+def _symbols(atoms: Iterable[Atom]) -> Iterable[str]:
+    return (a for atom in atoms for a in atom.arguments if isinstance(a, str))
