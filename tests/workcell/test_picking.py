@@ -192,3 +192,58 @@ def test_a_part_of_another_kind_in_the_gripper_is_put_back() -> None:
     record.u, record.y = other.u, other.y
     assert rig.run("Get", located).outcome == "abort"
     assert rig.world.ledger()["held"] == 0
+
+
+def test_looking_for_what_the_standing_tray_already_has_finds_that_and_does_nothing() -> None:
+    rig = Rig()
+    tray = rig.tray()
+    rig.run("FindGetInsert", "motor", tray)
+    rig.wait(1.0)
+    sent, now = rig.cell.arm.commands.sent, rig.scheduler.now
+    part = rig.run("Find", "motor").result
+    assert rig.run("Locate", "motor_a").result == part
+    steps = (
+        ("AwaitArrival", "motor"),
+        ("Get", part),
+        ("Test", "motor", part),
+        ("Insert", part, tray),
+        ("PutBack", part),
+    )
+    assert [rig.run(*step).outcome for step in steps] == ["stop"] * 5
+    assert (rig.cell.arm.commands.sent, rig.scheduler.now) == (sent, now)
+    assert rig.run("Find", "cap").result != part
+
+
+def test_what_was_taken_out_of_the_tray_is_looked_for_again_once_that_is_known() -> None:
+    rig = Rig()
+    tray = rig.tray()
+    rig.run("FindGetInsert", "motor", tray)
+    rig.wait(1.0)
+    rig.world.strike("part_removed_from_tray")
+    placed = rig.run("Find", "motor").result
+    assert rig.run("SlotVacant", tray, "motor").outcome == "stop"
+    assert rig.run("Insert", placed, tray).outcome == "abort"
+    fresh = rig.run("Find", "motor").result
+    assert fresh != placed
+    assert rig.run("Insert", fresh, tray).outcome == "stop"
+    assert rig.world.ledger()["in_trays"] == 1
+
+
+def test_what_somebody_else_put_into_the_tray_is_found_there_once_that_is_known() -> None:
+    rig = Rig()
+    tray = rig.tray()
+    rig.world.strike("part_added_to_tray", part="motor")
+    rig.run("SlotVacant", tray, "motor")
+    sent = rig.cell.arm.commands.sent
+    part = rig.run("Find", "motor").result
+    assert rig.run("Insert", part, tray).outcome == "stop"
+    assert rig.cell.arm.commands.sent == sent
+
+
+def test_with_several_trays_standing_nothing_is_taken_for_settled() -> None:
+    rig = Rig(kit=kit_from('[trays]\nplaces = 2\n[[part]]\nkind = "cap"'))
+    first, second = rig.tray(), rig.tray()
+    rig.run("FindGetInsert", "cap", first)
+    part = rig.run("Find", "cap").result
+    assert rig.run("Insert", part, second).outcome == "stop"
+    assert rig.world.ledger()["in_trays"] == 2

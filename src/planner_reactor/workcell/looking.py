@@ -48,6 +48,8 @@ class Looking:
         if m == TRAY:
             return
         kind = cell.kind(m)
+        if cell.memory.settled(kind):
+            return
         began = cell.scheduler.now
         while not cell.in_sight(m):
             waited = cell.scheduler.now - began
@@ -113,8 +115,8 @@ class Looking:
         if kind not in view.filled:
             self._note_missing(tray, kind)
             return
-        if kind not in tray.placed:
-            tray.noted.add(kind)
+        if not tray.done(kind):
+            cell.memory.note(tray, kind)
             cell.evidence.against(tray.blames(kind), f"slot {kind} of {t} is filled already")
         raise Aborted(f"slot {kind} of {t} is filled")
 

@@ -52,8 +52,7 @@ class TrayRecord:
     tag: str = ""
     pose: tuple[float, float] = (0.0, 0.0)
     place: int = -1
-    placed: dict[str, str] = field(default_factory=dict)  # slot → the part that we put there
-    noted: set[str] = field(default_factory=set)  # slots that a process found filled by others
+    contents: dict[str, str] = field(default_factory=dict)  # slot → what we put there, or a process found there
     came_filled: set[str] = field(default_factory=set)  # slots seen filled when it was taken from the stack
     glimpsed: set[str] = field(default_factory=set)  # slots that a monitor saw filled by others
     gone: set[str] = field(default_factory=set)  # slots that a monitor saw vacant though they should be filled
@@ -65,24 +64,24 @@ class TrayRecord:
 
     def expects(self, slot: str) -> bool:
         """Should something be in the slot, by all that was done and seen?"""
-        return slot in self.placed or slot in self.noted or slot in self.came_filled or slot in self.glimpsed
+        return slot in self.contents or slot in self.came_filled or slot in self.glimpsed
 
     def fill(self, slot: str, handle: str) -> None:
-        """We have put this part into the slot."""
-        self.placed[slot] = handle
+        """This part is in the slot."""
+        self.contents[slot] = handle
         self.gone.discard(slot)
 
     def vacate(self, slot: str) -> str:
         """The slot was seen vacant: forget what should be in it; gives the handle of what we had put there,
         or ''.
         """
-        for slots in (self.noted, self.came_filled, self.glimpsed, self.gone):
+        for slots in (self.came_filled, self.glimpsed, self.gone):
             slots.discard(slot)
-        return self.placed.pop(slot, "")
+        return self.contents.pop(slot, "")
 
     def done(self, slot: str) -> bool:
         """Is the slot filled, as far as is known?"""
-        return slot in self.placed or slot in self.noted
+        return slot in self.contents
 
 
 class Memory:
@@ -189,6 +188,18 @@ class Memory:
         self.trays[tray.handle] = tray
         return tray
 
+    def note(self, tray: TrayRecord, slot: str) -> None:
+        """A process found the slot filled, and not by us: what is in it gets a handle."""
+        self._parts_given += 1
+        record = PartRecord(f"part{self._parts_given}", slot, 0.0, 0.0, state="placed")
+        self.parts[record.handle] = record
+        tray.fill(slot, record.handle)
+
+    def settled(self, kind: str) -> str:
+        """What is already in the slot of this kind of the one tray that stands there, or ''."""
+        standing = [tray for tray in self.trays.values() if tray.state == "area"]
+        return standing[0].contents.get(kind, "") if len(standing) == 1 else ""
+
     def tray_taken(self, tray: TrayRecord, tag: str) -> None:
         """It is in the gripper, and the palm camera reads its tag: what was remembered under another handle
         is void.
@@ -202,7 +213,7 @@ class Memory:
         """It left the cell, with all that was in it."""
         tray.state = "left"
         self.trays.pop(tray.handle, None)
-        for handle in tray.placed.values():
+        for handle in tray.contents.values():
             self.parts.pop(handle, None)
         if self.held == tray.handle:
             self.held = ""

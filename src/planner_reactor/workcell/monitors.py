@@ -52,13 +52,13 @@ class Monitors:
         else:
             evidence.against("ADT", f"{tray.handle} is not where it was put")
         missing = [slot for slot in self._cell.kit.kinds if tray.expects(slot) and slot not in filled]
-        strange = [slot for slot in filled if slot in tray.gone or (slot not in tray.placed and slot not in tray.noted)]
+        strange = [slot for slot in filled if slot in tray.gone or not tray.done(slot)]
         tray.gone.difference_update(strange)
         tray.gone.update(missing)
         tray.glimpsed.update(strange)
         if missing:
             evidence.against("ACT", f"{missing[0]} is missing from {tray.handle}")
-        elif tray.placed:
+        elif tray.contents:
             evidence.supports("ACT")
         if not strange:
             evidence.supports("ACP")

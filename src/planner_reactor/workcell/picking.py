@@ -2,9 +2,10 @@
 
 `Find` trusts one picture (AM): it reaches for the place where the part was, and aborts if the gripper closes
 on nothing. `Locate`, then `Track # Get`, does not: the camera keeps the part in view and the arm follows it.
-Each checks with the palm camera what it holds, and puts back what it was not asked for. A `tray` comes from
-the stack, or, when the tray area is full, it is the tray that stands there: work left over by a withdrawn
-reaction is resumed.
+Each checks with the palm camera what it holds, and puts back what it was not asked for. When the one tray
+that stands there is known to have the part already, that part is found, and nothing is done: retrying is
+idempotent. A `tray` comes from the stack, or, when the tray area is full, it is the tray that stands there:
+work left over by a withdrawn reaction is resumed.
 """
 
 from __future__ import annotations
@@ -31,7 +32,10 @@ class Picking:
         if d == TRAY:
             return (yield from self._find_tray())
         cell = self._cell
-        turn = cell.arm.enter(d, cell.rank(cell.kind(d)))
+        kind = cell.kind(d)
+        if settled := cell.memory.settled(kind):
+            return settled
+        turn = cell.arm.enter(d, cell.rank(kind))
         try:
             handle = yield from self.take(turn, d)
             cell.arm.stand()
@@ -63,7 +67,10 @@ class Picking:
             yield cell.calibration.look_s
             tray = yield from self._standing_or_stacked()
             return tray.handle
-        rank = cell.rank(cell.kind(d))
+        kind = cell.kind(d)
+        if settled := cell.memory.settled(kind):
+            return settled
+        rank = cell.rank(kind)
         turn = cell.arm.enter(d, rank, waits_only=True) if rank >= FIXED else None
         try:
             record = yield from self._sight(d)

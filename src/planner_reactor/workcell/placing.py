@@ -48,7 +48,7 @@ class Placing:
         """Insert[x,t]: put the held part into the slot of its kind."""
         cell = self._cell
         tray = cell.tray(t)
-        if tray is not None and x in tray.placed.values():
+        if tray is not None and x in tray.contents.values():
             return
         turn = yield from cell.arm.take_up(x)
         try:
@@ -166,7 +166,7 @@ class Placing:
             if view.pose != tray.pose:
                 cell.evidence.against("ADT", f"{tray.handle} is not where it was put")
             elif slot in view.filled:
-                tray.noted.add(slot)
+                cell.memory.note(tray, slot)
                 cell.evidence.against(tray.blames(slot), f"slot {slot} of {tray.handle} was filled already")
 
     def _grip(self, tray: TrayRecord) -> Steps[None]:
