@@ -14,6 +14,7 @@ from collections.abc import Iterator
 import pytest
 
 from planner_reactor.analysis.conformance import Follower
+from planner_reactor.errors import BudgetError
 from planner_reactor.reactor.built_ins import BuiltIns
 from planner_reactor.rs.evolves import World, spawned_situations
 from planner_reactor.rs.parser import parse_process
@@ -163,7 +164,7 @@ def conforms(processes: list[Process], seed: int) -> int:
     )
     built_in.attach(executer)
     roots = [executer.start_process(process) for process in processes]
-    with contextlib.suppress(Enough):
+    with contextlib.suppress(Enough, BudgetError):
         executer.run(until=12.0)
         for number, root in enumerate(roots, 1):
             if root.outcome is None:

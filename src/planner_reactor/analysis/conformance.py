@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import replace
 
-from planner_reactor.errors import PlannerReactorError
+from planner_reactor.errors import BudgetError, PlannerReactorError
 from planner_reactor.rs.evolves import Config, Ending, Label, Oracle, World, started
 from planner_reactor.rs.leaves import elapsed, slack, steps
 from planner_reactor.rs.states import Bindings, Ended
@@ -17,6 +17,9 @@ from planner_reactor.rs.terms import Process, Value
 
 TOLERANCE = 1e-6
 """Seconds by which two clocks may differ."""
+
+MOST = 64
+"""Configurations that are followed at once: beyond, the labels of a run say too little to follow it further."""
 
 
 class Disagreement(PlannerReactorError):
@@ -44,6 +47,8 @@ class Follower:
         if not after:
             offered = sorted({str(s.label) for c in self.configs for s in steps(c, self._world)})
             raise Disagreement(f"step {self.steps + 1}: saw {label}, allowed: {'; '.join(offered) or 'nothing'}")
+        if len(after) > MOST:
+            raise BudgetError("configurations", f"step {self.steps + 1}: the run may be in {len(after)} states")
         self.configs = frozenset(after)
         self.steps += 1
 
