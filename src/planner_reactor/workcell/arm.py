@@ -55,8 +55,7 @@ class Commands:
 
 
 class Arm:
-    """The arm as a resource, and its motions. `in_sight(wanted)` says whether a part can be seen and reached.
-    """
+    """The arm as a resource, and its motions. `in_sight(wanted)` says whether a part can be seen and reached."""
 
     def __init__(self, plant: Plant, memory: Memory, *, in_sight: Callable[[str], bool]) -> None:
         self.owner: Turn | None = None

@@ -172,12 +172,18 @@ class Belt:
         self._leaving.pop(part.number).cancel()
 
     def shift(self, part: Part, along: float, across: float) -> None:
-        """A part slides along the belt (m), the other way if it would slide over an end."""
+        """A part slides along the belt (m): the other way if it would slide over an end, and further if on
+        another.
+        """
+        del self.parts[part.kind][part.number]
         travelled = self.position(part) + along
         if not 0.0 <= travelled < self.length - 0.03:
             travelled = min(max(travelled - 2 * along, 0.0), self.length - 0.03)
         part.u = travelled - self.speed * self._scheduler.now
         part.y += across
+        while not self._is_clear(part.u, part.y):
+            part.y += CLEAR if across >= 0 else -CLEAR
+        self.parts[part.kind][part.number] = part
         self._leaving.pop(part.number).cancel()
         self._time_leaving(part)
 

@@ -24,8 +24,7 @@ def contents_rule(kit: KitSpec) -> str:
 
 
 def with_kit(domain: str, kit: KitSpec) -> str:
-    """The text of a domain with the contents rule of this kit; raises InputError if it has not exactly one.
-    """
+    """The text of a domain with the contents rule of this kit; raises InputError if it has not exactly one."""
     found = _RULE.findall(domain)
     if len(found) != 1:
         raise InputError(f"a domain for kits has one rule '=> Contents(t) @ i', this one has {len(found)}")

@@ -30,8 +30,7 @@ class Verdict:
 
 @dataclass(frozen=True, slots=True)
 class Rejection:
-    """A kit that was lost: when, why, and the numbers of the faults that spoiled it (empty: our own doing).
-    """
+    """A kit that was lost: when, why, and the numbers of the faults that spoiled it (empty: our own doing)."""
 
     time: float
     tray: int

@@ -35,8 +35,7 @@ _PART_KEYS = ("kind", "variants", "wanted", "substitutes", "slot", "quality", "m
 
 @dataclass(frozen=True, slots=True)
 class PartKind:
-    """One kind of part: which variant the kit wants, which others serve instead, how it comes along the belt.
-    """
+    """One kind of part: which variant the kit wants, which others serve instead, how it comes along the belt."""
 
     kind: str
     variants: tuple[str, ...]

@@ -23,8 +23,7 @@ class Looking:
         self._placing = placing
 
     def choose(self, m: str) -> Steps[str]:
-        """Choose[m]<d>: the variant to look for: the wanted one; when that is starved, a substitute in sight.
-        """
+        """Choose[m]<d>: the variant to look for: the wanted one; when that is starved, a substitute in sight."""
         cell = self._cell
         if m == TRAY:
             return m
@@ -42,8 +41,7 @@ class Looking:
         return part.wanted
 
     def await_arrival(self, m: str) -> Steps[None]:
-        """AwaitArrival[m]: until a part of the kind (or variant) is in sight; its turn is then opportunistic.
-        """
+        """AwaitArrival[m]: until a part of the kind (or variant) is in sight; its turn is then opportunistic."""
         cell = self._cell
         if m == TRAY:
             return
@@ -61,8 +59,7 @@ class Looking:
         cell.memory.due[kind] += 1
 
     def test(self, m: str, x: str) -> Steps[None]:
-        """Test[m,x]: put what is held to the test; what fails is dropped into the reject bin, then it aborts.
-        """
+        """Test[m,x]: put what is held to the test; what fails is dropped into the reject bin, then it aborts."""
         cell = self._cell
         part, tray = cell.memory.parts.get(x), cell.memory.trays.get(x)
         record = part or tray

@@ -19,8 +19,7 @@ FILE = "papers_1994.toml"
 
 @dataclass(frozen=True, slots=True)
 class PlannerDurations:
-    """Seconds that the planner of 1994 took; `normal` by assumption, for all adaptations of its relaxation.
-    """
+    """Seconds that the planner of 1994 took; `normal` by assumption, for all adaptations of its relaxation."""
 
     first_adaptation_s: float
     refinement_s: float

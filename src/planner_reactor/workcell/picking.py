@@ -94,8 +94,7 @@ class Picking:
                 record.follower = None
 
     def get(self, x: str) -> Steps[None]:
-        """Get[x]: take a located part (where it is now, while it is tracked) or the tray on top of the stack.
-        """
+        """Get[x]: take a located part (where it is now, while it is tracked) or the tray on top of the stack."""
         cell = self._cell
         if cell.memory.held == x or self._is_placed(x):
             return

@@ -23,8 +23,7 @@ from planner_reactor.workcell.things import Part, Tray
 
 @dataclass(frozen=True, slots=True)
 class Glimpse:
-    """A part as the global camera sees it: `u`, `y` in the belt's frame (m). `certain`: seen the same thrice.
-    """
+    """A part as the global camera sees it: `u`, `y` in the belt's frame (m). `certain`: seen the same thrice."""
 
     kind: str
     variant: str

@@ -133,8 +133,7 @@ class World:
         return True
 
     def sensed(self, subject: str) -> None:
-        """Evidence about `subject` (an assumption or a sensor) reached the cell: whatever it shows is sensed.
-        """
+        """Evidence about `subject` (an assumption or a sensor) reached the cell: whatever it shows is sensed."""
         if not self._unsensed:
             return
         for record in [r for r in self._unsensed if subject in DISTURBANCES[r.kind].sensed_by]:
