@@ -58,7 +58,7 @@ def check_calls(linked: Linked) -> Iterator[Diagnostic]:
             elif linked.clauses(call.name):
                 yield from _defined(linked, call)
             elif call.name not in linked.families:
-                hint = linked.nearest(call.name, {*linked.names, *linked.signatures})
+                hint = linked.nearest(call.name, linked.names, linked.signatures)
                 yield error(call.place, "unknown-process", f"unknown process {call.name}", hint)
             yield from _arguments(linked, known, number, call)
 
@@ -77,16 +77,18 @@ def _basic(signature: Signature, call: Call) -> Iterator[Diagnostic]:
 
 
 def _defined(linked: Linked, call: Call) -> Iterator[Diagnostic]:
-    clauses = [linked.schemas[number] for number in linked.clauses(call.name)]
-    first = clauses[0]
+    clauses = linked.clauses(call.name)
+    first = linked.schemas[clauses[0]]  # all clauses have the form of the first, or `clauses` says so
     given, named = len(call.arguments), len(call.results)
-    if all(len(clause.head) != given for clause in clauses):
-        yield _count(call, "argument", f"takes {len(first.head)}", given, show_head(first))
-    elif not linked.targets(call):
-        there_are = ", ".join(map(show_head, clauses[:SHOWN])) + (", …" if len(clauses) > SHOWN else "")
-        asked = show(Call(call.name, call.arguments))
-        yield error(call.place, "no-clause", f"no clause applies to {asked}", f"there are {there_are}")
-    if named and all(len(clause.results) != named for clause in clauses):
+    if not linked.targets(call):
+        if given != len(first.head):
+            yield _count(call, "argument", f"takes {len(first.head)}", given, show_head(first))
+        else:
+            there_are = [show_head(linked.schemas[number]) for number in clauses[:SHOWN]]
+            hint = f"there are {', '.join(there_are)}{', …' if len(clauses) > SHOWN else ''}"
+            asked = show(Call(call.name, call.arguments))
+            yield error(call.place, "no-clause", f"no clause applies to {asked}", hint)
+    if named not in (0, len(first.results)):
         yield _count(call, "result", f"returns {len(first.results)}", named, show_head(first))
 
 
@@ -145,7 +147,7 @@ def _misfit(
         if argument.name in binders:
             return  # a result out of its scope: `bindings` says so
         place = argument.place or place
-        hint = linked.nearest(argument.name, [*linked.schemas[number].parameters, *binders])
+        hint = linked.nearest(argument.name, linked.schemas[number].parameters, binders)
         hint = hint or f"no parameter or result is called {argument.name}"
         message = f"{argument.name} is a symbol where {expected} is expected"
     else:

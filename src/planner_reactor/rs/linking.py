@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping
 from functools import cached_property
+from itertools import chain
 from typing import TypeAlias
 
 from planner_reactor.errors import Diagnostic, Place, RSError, nearest
@@ -34,7 +35,7 @@ from planner_reactor.rs.vocabulary import Signature
 UNKNOWN = object()
 """The value of an argument that is known only when the program runs."""
 
-MOST_HINTS = 50
+MOST_HINTS = 20
 """Looking for near names takes time."""
 
 NOWHERE = Place(1, 1)
@@ -116,10 +117,10 @@ class Linked:
                 raise RSError([error(self.schemas[number].place, "too-many-calls", message)])
         return found
 
-    def nearest(self, name: str, candidates: Iterable[str]) -> str:
+    def nearest(self, name: str, *candidates: Iterable[str]) -> str:
         """`did you mean X?`, or nothing after so many that more would be no help."""
         self._hints += 1
-        return nearest(name, sorted(candidates)) if self._hints <= MOST_HINTS else ""
+        return nearest(name, sorted({*chain(*candidates)})) if self._hints <= MOST_HINTS else ""
 
     @cached_property
     def calls_in_focus(self) -> Calls:

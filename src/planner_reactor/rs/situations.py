@@ -51,9 +51,9 @@ def _reactions(linked: Linked) -> Iterator[Diagnostic]:
         hint = "write SIT[…]<k> :; (…) or SIT[…]<k> :: (…)"
         message = "in a reaction a SIT is the whole left side of `:;` or `::`"
         yield error(sit.place, "sit-position", message, hint)
-    cycle_of = {number: set(cycle) for cycle in cycles(linked.calls_in_focus) for number in cycle}
+    cycle_of = {n: together for c in cycles(linked.calls_in_focus) for together in [frozenset(c)] for n in c}
     for number in reactions:
-        yield from _self_calls(linked, number, cycle_of.get(number, ()))
+        yield from _self_calls(linked, number, cycle_of.get(number, frozenset()))
 
 
 def _called(linked: Linked, processes: Iterable[Process]) -> list[int]:

@@ -249,10 +249,10 @@ class Program:
 
     def __init__(self, schemas: Iterable[Schema] = ()) -> None:
         self._schemas = tuple(schemas)
-        by_name: dict[str, tuple[Schema, ...]] = {}
+        by_name: dict[str, list[Schema]] = {}
         for schema in self._schemas:
-            by_name[schema.name] = (*by_name.get(schema.name, ()), schema)
-        self._by_name = by_name
+            by_name.setdefault(schema.name, []).append(schema)
+        self._by_name = {name: tuple(clauses) for name, clauses in by_name.items()}
 
     @property
     def schemas(self) -> tuple[Schema, ...]:
