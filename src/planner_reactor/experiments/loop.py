@@ -15,7 +15,7 @@ from typing import Any
 from planner_reactor.experiments.timing import Fixed, PlannerTime
 from planner_reactor.link.channels import AdaptationChannel, PerceptionChannel
 from planner_reactor.link.messages import Adaptation
-from planner_reactor.planner import Planner, Step
+from planner_reactor.planner.planner import Planner, Step
 from planner_reactor.reactor.laws import CHECKED as LAWS_CHECKED
 from planner_reactor.reactor.reactor import Reactor
 from planner_reactor.runtime import Budgets, Clock, Host, Scheduler, VirtualClock, World
@@ -46,7 +46,6 @@ class Milestones:
     first_adaptation_issued_s: float | None = None
     first_reactor_s: float | None = None
     first_ideal_s: float | None = None
-    stub_triggers_before_ideal: int = 0
 
 
 @dataclass(slots=True)
@@ -87,6 +86,7 @@ class Loop:
         self.relaxations: list[Relaxation] = []
         self.costs = Costs()
         self.issued = 0
+        self._completes_ideal: int | None = None  # the adaptation with which the first ω-ideal reactor is complete
         self._acted_on = 0  # number of the last perception given to the planner
         self._busy = False
         self._stop_at: Callable[[], bool] = lambda: False
@@ -141,15 +141,17 @@ class Loop:
         self._busy = False
         for adaptation in step.adaptations:
             self._send(adaptation, step)
+            if self._completes_ideal is None and self.planner.ideal:
+                self._completes_ideal = adaptation.id
         self._note_progress(step)
         self._turn()
 
     def _decided(self, step: Step) -> None:
-        if step.assumption and step.kind in ("normal", "forced", "reinstated"):
+        if step.assumption:
             last = self.relaxations[-1] if self.relaxations else None
-            if last is None or (last.assumption, last.cause) != (step.assumption, step.kind):
-                self.relaxations.append(Relaxation(step.assumption, step.kind, self.scheduler.now))
-                self.trace.record("relaxation", assumption=step.assumption, cause=step.kind)
+            if last is None or (last.assumption, last.cause) != (step.assumption, step.cause):
+                self.relaxations.append(Relaxation(step.assumption, step.cause, self.scheduler.now))
+                self.trace.record("relaxation", assumption=step.assumption, cause=step.cause)
 
     def _send(self, adaptation: Adaptation, step: Step) -> None:
         self.issued += 1
@@ -157,7 +159,7 @@ class Loop:
         if self.milestones.first_adaptation_issued_s is None:
             self.milestones.first_adaptation_issued_s = now
         for relaxation in reversed(self.relaxations):
-            if relaxation.assumption == step.assumption and relaxation.cause == step.kind:
+            if (relaxation.assumption, relaxation.cause) == (step.assumption, step.cause):
                 relaxation.issued_s, relaxation.last = now, adaptation.id
                 break
         self.trace.record(
@@ -196,15 +198,9 @@ class Loop:
         for relaxation in self.relaxations:
             if relaxation.last == adaptation_id:
                 relaxation.applied_s = now
-        if self.milestones.first_ideal_s is None and self._is_ideal():
+        if adaptation_id == self._completes_ideal and self.milestones.first_ideal_s is None:
             self.milestones.first_ideal_s = now
-            self.milestones.stub_triggers_before_ideal = self.reactor.stub_triggers
             self.trace.record("ideal")
-
-    def _is_ideal(self) -> bool:
-        """Has the reactor no placeholder left, and the planner nothing to add?"""
-        stubs = any(reaction.stubs for reaction in self.reactor.reactions.values())
-        return not stubs and not self.planner.expectation and not len(self.adaptations)
 
 
 def _imbalance(world: World) -> str:

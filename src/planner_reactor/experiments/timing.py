@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from typing import Protocol
 
 from planner_reactor.errors import InputError
-from planner_reactor.planner import Step
+from planner_reactor.planner.planner import Step
 
 PER_STEP = 0.001
 """Seconds charged for a planner step, unless told otherwise."""
@@ -87,13 +87,13 @@ class Recorded:
             return self._first
         if not step.assumption:
             return self._refinement
-        if self._relaxation != (step.kind, step.assumption):
-            self._relaxation = (step.kind, step.assumption)
+        if self._relaxation != (step.cause, step.assumption):
+            self._relaxation = (step.cause, step.assumption)
             return self._begin(step, max(1, outstanding))
         return self._share
 
     def _begin(self, step: Step, segments: int) -> float:
-        if step.kind == "normal":
+        if step.cause == "normal":
             self._share = self._normal.get(step.assumption, self._other) / segments
             return self._share
         self._share = self._forced / max(1, segments - 1)

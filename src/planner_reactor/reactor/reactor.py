@@ -53,7 +53,7 @@ class Reactor:
     ) -> None:
         self.scheduler = scheduler
         self.host = host or Host("none")
-        self.perceptions = perceptions or PerceptionChannel()
+        self.perceptions = PerceptionChannel() if perceptions is None else perceptions
         self.trace = trace or Trace(lambda: scheduler.now, keep=False)
         self.budgets = budgets or Budgets()
         self.reactions: dict[int, Reaction] = {}
