@@ -87,6 +87,7 @@ class Loop:
         self.costs = Costs()
         self.issued = 0
         self._completes_ideal: int | None = None  # the adaptation with which the first ω-ideal reactor is complete
+        self._unanswered: set[int] = set()
         self._acted_on = 0  # number of the last perception given to the planner
         self._busy = False
         self._stop_at: Callable[[], bool] = lambda: False
@@ -155,6 +156,7 @@ class Loop:
 
     def _send(self, adaptation: Adaptation, step: Step) -> None:
         self.issued += 1
+        self._unanswered.add(adaptation.id)
         now = self.scheduler.now
         if self.milestones.first_adaptation_issued_s is None:
             self.milestones.first_adaptation_issued_s = now
@@ -186,6 +188,8 @@ class Loop:
         )  # fmt: skip
 
     def _watch(self, event: Any) -> None:
+        if event.kind in ("adaptation_applied", "adaptation_refused", "adaptation_timed_out"):
+            self._unanswered.discard(event.data["id"])
         if event.kind == "adaptation_applied":
             self._note_applied(event.data["id"])
         if self._stop_at():
@@ -198,7 +202,8 @@ class Loop:
         for relaxation in self.relaxations:
             if relaxation.last == adaptation_id:
                 relaxation.applied_s = now
-        if adaptation_id == self._completes_ideal and self.milestones.first_ideal_s is None:
+        last = self._completes_ideal
+        if self.milestones.first_ideal_s is None and last is not None and min(self._unanswered, default=last + 1) > last:
             self.milestones.first_ideal_s = now
             self.trace.record("ideal")
 
