@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from planner_reactor.workcell.host import _paced
+from planner_reactor.workcell.host import paced
 from planner_reactor.workcell.kit import kit_from
 
 from .driving import Rig
@@ -58,7 +58,7 @@ def test_find_takes_a_part_that_comes_while_it_waits() -> None:
 
 def test_find_of_what_is_no_part_aborts_but_not_at_the_same_instant() -> None:
     rig = Rig()
-    running = rig.begin_routine(_paced(rig.routines["Find"], rig.scheduler)("moter"))
+    running = rig.begin_routine(paced(rig.routines["Find"], rig.scheduler)("moter"))
     assert running.outcome is None
     rig.finish(running)
     assert (running.outcome, running.reason, rig.scheduler.now) == ("abort", "no part is called moter", 0.2)

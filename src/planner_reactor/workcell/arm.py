@@ -212,6 +212,7 @@ class Arm:
 
     @property
     def is_over_trays(self) -> bool:
+        """Is it over the tray area, where nobody else may reach in?"""
         return self._plant.arm_over_trays
 
     def close_on_part(self, u: float, y: float) -> bool:
@@ -219,15 +220,19 @@ class Arm:
         return self._plant.close_on_part(u, y)
 
     def close_on_stack(self) -> bool:
+        """Close on the topmost tray; does the gripper feel something?"""
         return self._plant.close_on_stack()
 
     def close_on_tray(self, tag: str) -> tuple[float, float] | None:
+        """Close on a standing tray, guided by the palm camera; gives where it stood, or None."""
         return self._plant.close_on_tray(tag)
 
     def seat(self, pose: tuple[float, float], slot: str) -> Felt:
+        """Press the part down where that slot of a tray at `pose` would be; what the force sensor feels."""
         return self._plant.seat(pose, slot)
 
     def set_down_tray(self, pose: tuple[float, float]) -> bool:
+        """Set the held tray down; False if there is none or no room."""
         return self._plant.set_down_tray(pose)
 
     def put_back(self) -> None:
@@ -241,6 +246,7 @@ class Arm:
             self.slipped()
 
     def hand_over(self) -> Verdict | None:
+        """Push the held tray out; downstream's refusal can be read off the verdict at once, the rest comes later."""
         return self._plant.hand_over()
 
     # ---------------------------------------------------------------------------------- its insides

@@ -100,6 +100,7 @@ class Turns:
     order: tuple[str, ...]
 
     def admits(self, kind: str, now: float) -> bool:
+        """Is it this kind's turn?"""
         if now >= self.until:
             return True
         return self.order[int((now - self.start) / self.phase_s) % len(self.order)] == kind

@@ -51,7 +51,7 @@ def host(
     cell.evidence.report = lambda assumption, text: made.report(assumption, False, text)
     for name, routine, results, high in processes(cell):
         outcomes = ("abort",) if name == "Track" else ("stop", "abort")
-        made.process(results=results, window=(0.0, high), outcomes=outcomes, name=name)(_paced(routine, scheduler))
+        made.process(results=results, window=(0.0, high), outcomes=outcomes, name=name)(paced(routine, scheduler))
     monitors = Monitors(cell)
     for assumption in ASSUMPTIONS:
         made.assumption(assumption)(partial(monitors.holds, assumption))
@@ -87,11 +87,11 @@ def processes(cell: Cell) -> Iterator[tuple[str, Callable[..., Steps[Any]], tupl
     yield "AwaitReady", looking.await_ready, (), c.patience_s + 1.0
 
 
-def _paced(routine: Callable[..., Steps[Any]], scheduler: Scheduler) -> Callable[..., Steps[Any]]:
+def paced(routine: Callable[..., Steps[Any]], scheduler: Scheduler) -> Callable[..., Steps[Any]]:
     """The routine, but an abort at the very instant of its start comes `REACTION_S` later."""
 
     @wraps(routine)
-    def paced(*arguments: Any) -> Steps[Any]:
+    def begun(*arguments: Any) -> Steps[Any]:
         began = scheduler.now
         try:
             return (yield from routine(*arguments))
@@ -102,4 +102,4 @@ def _paced(routine: Callable[..., Steps[Any]], scheduler: Scheduler) -> Callable
         yield REACTION_S
         raise Aborted(reason)
 
-    return paced
+    return begun

@@ -81,6 +81,7 @@ class KitSpec:
 
     @property
     def kinds(self) -> tuple[str, ...]:
+        """The part kinds, as listed."""
         return tuple(p.kind for p in self.parts)
 
 

@@ -65,23 +65,23 @@ class Placing:
         finally:
             cell.arm.leave(turn)
 
-    def move(self, x: str, l: str) -> Steps[None]:  # noqa: E741 - the name of the domain's text
+    def move(self, x: str, to: str) -> Steps[None]:
         """Move[x,l]: put what is held at a place: a tray into the tray area, anything onto belt, stack or
         reject bin.
         """
         cell = self._cell
-        if l not in LOCATIONS:
-            raise Aborted(f"no place is called {l}")
+        if to not in LOCATIONS:
+            raise Aborted(f"no place is called {to}")
         tray = cell.memory.trays.get(x)
-        if l == "trayarea" and x.startswith(TRAY) and (tray is None or tray.state == "area"):
+        if to == "trayarea" and x.startswith(TRAY) and (tray is None or tray.state == "area"):
             cell.tray(x)
             return
-        if l in ("belt", "stack"):
+        if to in ("belt", "stack"):
             yield from self._picking.put_back(x)
             return
         turn = yield from cell.arm.take_up(x)
         try:
-            if l == "rejectbin":
+            if to == "rejectbin":
                 yield from self.discard("moved there")
             elif tray is None:
                 raise Aborted(f"{x} is no tray")

@@ -137,6 +137,7 @@ class Fields:
         return tuple(value)
 
     def error(self, message: str, key: str = "", hint: str = "") -> InputError:
+        """An `InputError` at this key of this table."""
         return self.source.error(message, table=self.table, index=self.index, key=key, hint=hint)
 
 
