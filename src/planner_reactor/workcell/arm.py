@@ -77,8 +77,6 @@ class Arm:
         self._busy_until = 0.0
         self._done_at = 0.0
 
-    # ---------------------------------------------------------------------------------------- turns
-
     def enter(self, wanted: str, rank: int, *, waits_only: bool = False) -> Turn:
         """Queue for the empty arm; for `rank` FIXED and above it counts as ready only when its part is in
         sight.
@@ -150,7 +148,8 @@ class Arm:
         changed = False
         for turn in self.queue:
             if not turn.ready and not turn.waits_only and self._plant.kit.kind_of.get(turn.wanted) == kind:
-                turn.ready = changed = self._in_sight(turn.wanted)
+                turn.ready = self._in_sight(turn.wanted)
+                changed = changed or turn.ready
         if changed:
             self._arrange()
 
@@ -182,8 +181,6 @@ class Arm:
     def reconciling(self) -> bool:
         """Is it waiting for somebody to take up what it holds, or putting it away?"""
         return self._reconcile is not None
-
-    # -------------------------------------------------------------------------------------- motions
 
     def go(self, command: str, seconds: float) -> float:
         """Send a command; yields its duration (varied a little) for the process to wait."""
@@ -246,10 +243,8 @@ class Arm:
             self.slipped()
 
     def hand_over(self) -> Verdict | None:
-        """Push the held tray out; downstream's refusal can be read off the verdict at once, the rest comes later."""
+        """Push the held tray out: what downstream says of it (a refusal is felt at once), or None if none is held."""
         return self._plant.hand_over()
-
-    # ---------------------------------------------------------------------------------- its insides
 
     def _arrange(self) -> None:
         if self._granting is None and self.owner is None and not self.gripped and self.queue:

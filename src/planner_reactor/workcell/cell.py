@@ -55,8 +55,6 @@ class Cell:
         plant.downstream.answer = self._answered
         plant.downstream.told = self._ready_line
 
-    # ------------------------------------------------------------------------------------- pictures
-
     def look(self, kind: str) -> bool:
         """Take a picture and remember what is in it; False without a picture."""
         glimpses = self.sensors.look(kind)
@@ -85,8 +83,6 @@ class Cell:
         found = self.memory.candidate(wanted, self.scheduler.now, self.reach_s)
         return found is not None or self.spot(wanted) is not None
 
-    # -------------------------------------------------------------------------------------- handles
-
     def kind(self, name: str) -> str:
         """The part kind of a kind or variant; aborts if there is none of that name."""
         kind = self.kit.kind_of.get(name)
@@ -110,8 +106,6 @@ class Cell:
         """Where the tray in that place stands (m)."""
         return (0.4 * place, 0.5)
 
-    # ---------------------------------------------------------------------------------------- order
-
     def rank(self, kind: str) -> int:
         """The rank of a turn for this kind: opportunistic when its arrival was awaited (uses that up), else
         fixed.
@@ -120,8 +114,6 @@ class Cell:
             self.memory.due[kind] -= 1
             return OPPORTUNE
         return FIXED + self.kit.priority[kind]
-
-    # -------------------------------------------------------------------------------- what comes in
 
     def _noticed(self, glimpse: Glimpse) -> None:
         now = self.scheduler.now

@@ -141,8 +141,6 @@ class Looking:
             if left <= 0 or not (yield cell.downstream_changed.within(left)):
                 raise Aborted("downstream is not ready")
 
-    # --------------------------------------------------------------------------------------- inside
-
     def _inspect(self, tray: TrayRecord, holding: str, *, seconds: float = 0.0) -> Steps[TrayView]:
         """A picture of the tray; from above it, if the arm holds a part for it (so that nobody reaches in
         after).

@@ -138,8 +138,6 @@ class Picking:
         cell.arm.put_back()
         cell.memory.let_go()
 
-    # -------------------------------------------------------------------------------- parts, inside
-
     def _choose(self, turn: Turn, wanted: str, deadline: float) -> Steps[PartRecord]:
         cell = self._cell
         while True:
@@ -228,8 +226,6 @@ class Picking:
         if part is None and tray is None:
             return handle.startswith(TRAY) and memory.was_given(handle)
         return (part is not None and part.state == "placed") or (tray is not None and tray.state == "area")
-
-    # -------------------------------------------------------------------------------- trays, inside
 
     def _find_tray(self) -> Steps[str]:
         tray = yield from self._standing_or_stacked()

@@ -133,8 +133,6 @@ class Placing:
             yield cell.arm.go("carry", cell.calibration.carry_s)
             cell.arm.over_trays()
 
-    # --------------------------------------------------------------------------------------- inside
-
     def _press_in(self, handle: str, tray: TrayRecord) -> Steps[None]:
         cell = self._cell
         part = cell.memory.parts[handle]

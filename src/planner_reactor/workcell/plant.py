@@ -75,8 +75,6 @@ class Plant:
         """Is the global camera without a picture?"""
         return self.scheduler.now < self.dark_until
 
-    # ---------------------------------------------------------------------------- what the arm does
-
     def close_on_part(self, u: float, y: float) -> bool:
         """Close the gripper at a place of the belt's frame; does it close on something?"""
         self.closing = (u, y)
@@ -193,8 +191,6 @@ class Plant:
         self.happened()
         return verdict
 
-    # ------------------------------------------------------------------------ what may happen to it
-
     def add_to_tray(self, tray: Tray, part: Part, why: str) -> None:
         """Somebody else puts a new part into a tray."""
         tray.slots[part.kind] = part
@@ -225,8 +221,6 @@ class Plant:
         self._compare()
         if self.attempts:
             self._let_faults_strike()
-
-    # ---------------------------------------------------------------------------------- its insides
 
     def _part_arrived(self, part: Part) -> None:
         self.books.part_arrived(part, "belt", at="belt")
