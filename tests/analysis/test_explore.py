@@ -159,3 +159,16 @@ def test_a_printed_reassert_would_keep_a_drained_parent_for_ever(assertion: str)
     found = explore(config, world, laws=LAWS, limit=5_000)
     trapped = found.trapped(script_has_ended)
     assert (trapped is None) == (assertion == "ASSERT[sb]")
+
+
+def test_a_withdrawn_instance_is_not_served_again_so_that_two_reactions_cannot_keep_each_other_alive() -> None:
+    two = parse_process("(SIT[s]<k> :; Q) | (SIT[s]<j> :; Q) | ASSERT[s]")
+    config = started(parse_process("DRAIN[s]"), WORLD, config=started(two, WORLD))
+
+    def served_while_withdrawn(before: Config, step: Step) -> bool:
+        return not (step.label[0] == "SIT" and any(i.withdrawn for i in before.store.instances))
+
+    found = explore(config, WORLD, laws={"not served again": served_while_withdrawn})
+    assert found.complete
+    assert not found.violations
+    assert found.trapped(lambda state: isinstance(state.root(2), Ended)) is None

@@ -62,9 +62,9 @@ def test_below_itself_through_other_situations_and_definitions() -> None:
     text = "P = SIT[s] :; Q\nQ = REASSERT[t]\nR = SIT[t] {} (Act[1] ; ASSERT[s])"
     assert messages(text.format(":;"), "asserted-below-itself") == [
         "situation t is asserted from below itself, "
-        "its `:;` would wait for itself (here from below s); serve it with SIT[t]<k> :: …",
+        "its `:;` would wait for itself (t → s → t); serve it with SIT[t]<k> :: …",
         "situation s is asserted from below itself, "
-        "its `:;` would wait for itself (here from below t); serve it with SIT[s]<k> :: …",
+        "its `:;` would wait for itself (s → t → s); serve it with SIT[s]<k> :: …",
     ]
     assert len(messages(text.format("::"), "asserted-below-itself")) == 1
 

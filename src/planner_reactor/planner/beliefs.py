@@ -46,11 +46,13 @@ class Beliefs:
 
     def assume(self, atoms: Iterable[Atom], bindings: Bindings | None = None) -> Answer:
         """Do all of these assumptions hold? An assumption with arguments fails with its name or for them alone."""
-        used, missing = set(), set()
+        used, missing = [], []
         for atom in atoms:
-            name = assumption_name(bindings.ground(atom) if bindings else atom)
-            (missing if {name, atom.predicate} & self.relaxed else used).add(name)
-        return Answer(not missing, frozenset(used), frozenset(missing))
+            name = atom.predicate
+            if atom.arguments:
+                name = assumption_name(bindings.ground(atom) if bindings else atom)
+            (missing if name in self.relaxed or atom.predicate in self.relaxed else used).append(name)
+        return Answer(not missing, frozenset(used), frozenset(missing)) if used or missing else _CERTAIN
 
     def known(self, atom: Atom) -> bool | None:
         """What has been told of a ground atom; None if nothing."""

@@ -24,6 +24,7 @@ from planner_reactor.logic.domain import ActionSchema, Domain
 from planner_reactor.logic.formulas import Atom
 from planner_reactor.planner.beliefs import Beliefs
 from planner_reactor.planner.issuing import Draft, Issuer, UnderWay
+from planner_reactor.planner.memory import Memory
 from planner_reactor.planner.model import Model, Segment
 from planner_reactor.planner.refinement import Context, Refinement, Situation, refine, root_schema
 from planner_reactor.planner.sensing import observer_of
@@ -97,7 +98,7 @@ class Planner:
         self._returning: dict[str, None] = {}
         self._failures: Counter[str] = Counter()
         self._draft: Draft | None = None
-        self._memory: dict[object, list[Refinement]] = {}
+        self._memory = Memory(self._theory)
         self._counts: Counter[str] = Counter()
         self._start = self.model.new(root, self._root_context)
 
@@ -144,7 +145,7 @@ class Planner:
 
     def statistics(self) -> Mapping[str, int]:
         """Counts: refinements, adaptations by outcome, relaxations by cause, perceptions by kind."""
-        return dict(self._counts)
+        return {**self._counts, "refinements": self._memory.worked_out}
 
     # ------------------------------------------------------------------------------------------- one step
 
@@ -245,18 +246,11 @@ class Planner:
         return self.model.context(situation, draft.refinements.values())
 
     def _refine(self, situation: Situation, context: Context) -> Refinement:
-        """The refinement, from memory if it was planned before under beliefs that say the same about it."""
-        key = (situation, context, self.beliefs.told)
-        relaxed = self.beliefs.relaxed
-        for known in self._memory.get(key, ()):
-            if not (known.required | known.presumed) & relaxed and known.missing <= relaxed:
-                return known
-        self._counts["refinements"] += 1
-        found = refine(
-            self._theory, self.beliefs, self._schema(situation), situation, context, fold=self.fold
+        theory, beliefs, fold = self._theory, self.beliefs, self.fold
+        schema = self._schema(situation)
+        return self._memory.recall(
+            situation, context, beliefs, lambda: refine(theory, beliefs, schema, situation, context, fold=fold)
         )
-        self._memory.setdefault(key, []).append(found)
-        return found
 
     def _schema(self, situation: Situation) -> ActionSchema:
         return self._root if situation == self.model.root else self.domain.schemas[situation.schema]

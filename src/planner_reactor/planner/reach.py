@@ -40,7 +40,7 @@ class Reach:
         """At least so many actions bring it about (what these need does not count)."""
         found = self._here.get(predicate, NEVER)
         if found > self._best.get(predicate, NEVER):
-            self.consulted.missing |= self._missing_for(predicate)
+            self.consulted.missing |= _missing(self.problem.theory, self.problem.beliefs.relaxed, predicate)
         return found
 
     def least_together(self, predicates: Iterable[str]) -> int:
@@ -56,25 +56,16 @@ class Reach:
                 total += cost
         return max(total, largest)
 
-    def _missing_for(self, predicate: str) -> set[str]:
-        """The relaxed assumptions on the ways that lead to the predicate."""
-        theory, beliefs = self.problem.theory, self.problem.beliefs
-        missing: set[str] = set()
-        seen = {predicate}
-        waiting = [predicate]
-        while waiting:
-            goal = waiting.pop()
-            bodies = []
-            for rule in theory.domain.rules_for.get(goal, ()):
-                missing |= beliefs.assume(rule.assumptions).missing
-                bodies.append(rule.body)
-            for schema, _ in theory.domain.producers.get(goal, ()):
-                missing |= beliefs.assume(theory.assumed(schema)).missing
-                bodies.append(schema.executability)
-            new = {c.atom.predicate for body in bodies for c in body} - seen
-            seen |= new
-            waiting.extend(sorted(new))
-        return missing
+
+def _missing(theory: Theory, relaxed: frozenset[str], predicate: str) -> frozenset[str]:
+    """The relaxed assumptions on the ways that lead to the predicate."""
+    key = (predicate, relaxed)
+    found = theory.missing.get(key)
+    if found is None:
+        found = theory.missing[key] = frozenset(theory.assumptions_behind(predicate) & relaxed) | frozenset(
+            name for name in relaxed if name.partition("(")[0] in theory.assumptions_behind(predicate)
+        )
+    return found
 
 
 def _bounds(theory: Theory, given: frozenset[str], forbidden: frozenset[str], relaxed: frozenset[str]) -> _Bounds:

@@ -8,7 +8,7 @@ that planning in increments and planning anew agree.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 
 from planner_reactor.logic.domain import ActionSchema, Condition
@@ -17,7 +17,7 @@ from planner_reactor.planner.beliefs import Beliefs
 from planner_reactor.planner.plan import END, START, Link, Parameter, Plan, Step
 from planner_reactor.planner.problem import Consulted, Problem, Truth
 from planner_reactor.planner.search import Search
-from planner_reactor.planner.structure import Action, Tree, action_of, arrange, needed_before
+from planner_reactor.planner.structure import Action, Tree, action_of, arrange, needed_before, renamed
 from planner_reactor.planner.theory import Theory
 from planner_reactor.planner.threats import Threats
 
@@ -31,6 +31,10 @@ class Situation:
 
     schema: str
     arguments: tuple[Term | None, ...] = ()
+
+    def renamed(self, constants: Mapping[Term, Term]) -> Situation:
+        """The same situation of other constants."""
+        return Situation(self.schema, tuple(a if a is None else constants.get(a, a) for a in self.arguments))
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,6 +60,10 @@ class Child:
     granted: tuple[bool, ...]
     replayed: frozenset[int] | None
 
+    def renamed(self, constants: Mapping[Term, Term]) -> Child:
+        arguments = tuple(constants.get(a, a) for a in self.arguments)
+        return Child(self.situation.renamed(constants), arguments, self.granted, self.replayed)
+
 
 @dataclass(frozen=True, slots=True)
 class Refinement:
@@ -76,6 +84,21 @@ class Refinement:
     asked: tuple[Atom, ...] = ()
     blocked: frozenset[str] = frozenset()
     warnings: tuple[str, ...] = ()
+
+
+    def renamed(self, constants: Mapping[Term, Term]) -> Refinement:
+        """The same refinement for constants that the domain does not tell apart."""
+        return replace(
+            self,
+            situation=self.situation.renamed(constants),
+            tree=None if self.tree is None else renamed(self.tree, constants),
+            outputs=tuple(tuple(constants.get(t, t) for t in terms) for terms in self.outputs),
+            children=tuple(child.renamed(constants) for child in self.children),
+            cleanup=tuple(action.renamed(constants) for action in self.cleanup),
+            asked=tuple(
+                Atom(atom.predicate, tuple(constants.get(a, a) for a in atom.arguments)) for atom in self.asked
+            ),
+        )
 
 
 def refine(

@@ -26,6 +26,10 @@ class Action:
     arguments: tuple[Term, ...] = ()
     results: tuple[Result, ...] = ()
 
+    def renamed(self, constants: Mapping[Term, Term]) -> Action:
+        """The same action on other constants."""
+        return Action(self.name, self.abstract, tuple(constants.get(a, a) for a in self.arguments), self.results)
+
 
 @dataclass(frozen=True, slots=True)
 class Run:
@@ -94,6 +98,21 @@ def actions_of(tree: Tree) -> Iterator[Action]:
             case Choice(test, then, otherwise):
                 yield test
                 waiting.extend((otherwise, then))
+
+
+def renamed(tree: Tree, constants: Mapping[Term, Term]) -> Tree:
+    """The same composition with other constants in its actions."""
+    match tree:
+        case Run(action):
+            return Run(action.renamed(constants))
+        case InOrder(parts):
+            return InOrder(tuple(renamed(part, constants) for part in parts))
+        case Together(parts):
+            return Together(tuple(renamed(part, constants) for part in parts))
+        case During(action, inner):
+            return During(action.renamed(constants), renamed(inner, constants))
+        case Choice(test, then, otherwise):
+            return Choice(test.renamed(constants), renamed(then, constants), renamed(otherwise, constants))
 
 
 def first_action(tree: Tree) -> Action | None:

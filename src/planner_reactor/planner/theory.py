@@ -7,7 +7,7 @@ of a rule's body that share no variable; `contributors` the actions that can hel
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Iterator
 
 from planner_reactor.logic.domain import ActionSchema, Condition, Domain, Rule
 from planner_reactor.logic.formulas import Atom, variables
@@ -25,18 +25,20 @@ class Theory:
         self.ends = {s.name: self._ended_by(s) for s in domain.schemas.values()}
         self.achievable = frozenset().union(*self.effects.values())
         self.changing = frozenset().union(*self.ends.values())
-        self.alike = _alike(domain)
         self.lasting_facts = frozenset(domain.facts) - self.changing
         """The predicates of facts that no action can end, so that they hold everywhere."""
         self.alternatives = {s.name: self._alternatives(s) for s in domain.schemas.values()}
         """For each abstract action the others that do all that it does: they stand beside it, never below."""
         self.contributors = _contributors(domain)
         self.bounds: dict[object, dict[str, int]] = {}
+        self._groups: dict[int, tuple[tuple[Condition, ...], ...]] = {}
+        self.alike = _alike(domain, self.groups)
+        self.missing: dict[tuple[str, frozenset[str]], frozenset[str]] = {}
+        self._behind: dict[str, frozenset[str]] = {}
         self._assumed = {
             s.name: tuple(a for a in s.applicability if a.predicate in domain.assumptions)
             for s in domain.schemas.values()
         }
-        self._groups: dict[int, tuple[tuple[Condition, ...], ...]] = {}
 
     def _alternatives(self, schema: ActionSchema) -> frozenset[str]:
         own = self.effects[schema.name]
@@ -60,6 +62,27 @@ class Theory:
     def assumed(self, schema: ActionSchema) -> tuple[Atom, ...]:
         """The assumptions without which the action may not be selected."""
         return self._assumed[schema.name]
+
+    def assumptions_behind(self, predicate: str) -> frozenset[str]:
+        """All assumptions that some way to the predicate rests on."""
+        found = self._behind.get(predicate)
+        if found is None:
+            found = self._behind[predicate] = self._collect(predicate)
+        return found
+
+    def _collect(self, predicate: str) -> frozenset[str]:
+        assumed: set[str] = set()
+        seen = {predicate}
+        waiting = [predicate]
+        while waiting:
+            goal = waiting.pop()
+            ways = [(r.assumptions, r.body) for r in self.domain.rules_for.get(goal, ())]
+            ways += [(self.assumed(s), s.executability) for s, _ in self.domain.producers.get(goal, ())]
+            for assumptions, body in ways:
+                assumed.update(a.predicate for a in assumptions)
+                waiting.extend({c.atom.predicate for c in body} - seen)
+                seen.update(c.atom.predicate for c in body)
+        return frozenset(assumed)
 
     def groups(self, rule: Rule) -> tuple[tuple[Condition, ...], ...]:
         """The conditions of a rule in groups that share no variable but those of its head, in order."""
@@ -101,10 +124,33 @@ def _contributors(domain: Domain) -> dict[str, frozenset[str]]:
     return defaultdict(frozenset, known)
 
 
-def _alike(domain: Domain) -> frozenset[str]:
-    """The symbols that stand only in the bodies of rules: no schema, fact, head or exclusion tells them apart."""
+def _alike(domain: Domain, groups: Callable[[Rule], tuple[tuple[Condition, ...], ...]]) -> dict[str, object]:
+    """Constant → its kind, for the symbols that stand only in bodies of rules, always in the same company.
+
+    Two constants of one kind can change places without changing the domain.
+    """
+    special = _special_symbols(domain)
+    company: dict[str, list[tuple[object, ...]]] = {}
+    for number, rule in enumerate(domain.rules):
+        for group in groups(rule):
+            for symbol in dict.fromkeys(_symbols(c.atom for c in group)):
+                if symbol not in special:
+                    company.setdefault(symbol, []).append((number, *_in_place_of(symbol, group)))
+    return {symbol: tuple(sorted(places, key=str)) for symbol, places in company.items()}
+
+
+def _in_place_of(symbol: str, group: tuple[Condition, ...]) -> Iterator[object]:
+    numbers = {v: n for n, v in enumerate(variables(tuple(c.atom for c in group)))}
+    for condition in group:
+        arguments = (
+            numbers[a] if type(a) is int else (None if a == symbol else str(a)) for a in condition.atom.arguments
+        )
+        yield (condition.atom.predicate, condition.relation, *arguments)
+
+
+def _special_symbols(domain: Domain) -> set[str]:
+    """The symbols that a schema, fact, head or exclusion tells apart from others."""
     special: set[str] = set()
-    common: set[str] = set()
     for schema in domain.schemas.values():
         special.update(_symbols((*schema.presumes, *schema.applicability, *schema.expansions)))
         special.update(_symbols(c.atom for c in schema.executability))
@@ -112,7 +158,6 @@ def _alike(domain: Domain) -> frozenset[str]:
     for rule in domain.rules:
         special.update(_symbols((rule.head, *rule.assumptions)))
         special.update(t for pair in rule.distinct for t in pair if isinstance(t, str))
-        common.update(_symbols(c.atom for c in rule.body))
     for exclusion in domain.exclusions:
         special.update(_symbols((exclusion.first, exclusion.second, *exclusion.given)))
         special.update(t for pair in exclusion.distinct for t in pair if isinstance(t, str))
@@ -120,7 +165,7 @@ def _alike(domain: Domain) -> frozenset[str]:
         special.update(_symbols(a for p in persistences for a in (p.atom, *p.assumptions)))
     special.update(_symbols(fact for facts in domain.facts.values() for fact in facts))
     special.update(_symbols(a for goal in domain.goals.values() for a in (*goal.antecedent, *goal.consequent)))
-    return frozenset(common - special)
+    return special
 
 
 def _symbols(atoms: Iterable[Atom]) -> Iterable[str]:

@@ -9,13 +9,17 @@ by `::`: a `:;` serves one instance at a time, and the inner one would wait for 
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator
+from typing import TypeAlias
 
 from planner_reactor.errors import Diagnostic, Place
 from planner_reactor.rs.facts import Service, facts_of
-from planner_reactor.rs.graphs import cycles, reachable
+from planner_reactor.rs.graphs import cycles, reachable, way_round
 from planner_reactor.rs.linking import Linked, error, value_of, warning
-from planner_reactor.rs.terms import Expression, Process, calls
+from planner_reactor.rs.terms import Call, Expression, Process, calls
 from planner_reactor.rs.uses import Uses
+
+Node: TypeAlias = str | int
+"""A situation by its name, or a definition by its number."""
 
 ASSERTING = frozenset({"ASSERT", "REASSERT"})
 
@@ -72,43 +76,52 @@ def _self_calls(linked: Linked, number: int, cycle: Collection[int]) -> Iterator
 
 
 def _below_itself(linked: Linked) -> Iterator[Diagnostic]:
+    """Cycles of the graph in which a situation leads to what the bodies that serve it assert and call, and a
+    definition to what it asserts and calls."""
     services: dict[str, list[Service]] = {}
     for facts in linked.facts:
         for service in facts.services:
             name = _name(service.situation)
             if name is not None:
                 services.setdefault(name, []).append(service)
-    asserted: dict[str, dict[str, Place | None]] = {}
-    waiting = [_name(s.situation) for number in linked.focus for s in linked.facts[number].services]
+    begun = (_name(service.situation) for n in linked.focus for service in linked.facts[n].services)
+    waiting: list[Node] = [name for name in begun if name is not None]
+    below: dict[Node, dict[Node, Place | None]] = {}
     while waiting:
-        name = waiting.pop()
-        if name is not None and name in services and name not in asserted:
-            asserted[name] = _asserted(linked, [service.body for service in services[name]])
-            waiting.extend(asserted[name])
-    for cycle in cycles(asserted):
+        node = waiting.pop()
+        if node not in below:
+            found = linked.facts[node].calls if isinstance(node, int) else _calls_of(services.get(node, ()))
+            below[node] = _steps(linked, found)
+            waiting.extend(below[node])
+    for cycle in cycles(below):
         together = set(cycle)
-        for above in cycle:
-            for name, place in asserted[above].items():
-                if name in together and not any(service.spawns for service in services[name]):
-                    yield _asserted_below(name, above, place)
+        asserted = {s: place for node in cycle for s, place in below[node].items() if s in together}
+        for node, place in asserted.items():
+            if isinstance(node, str) and not any(service.spawns for service in services[node]):
+                way = [n for n in way_round(below, node) if isinstance(n, str)]
+                yield _asserted_below(node, way, place)
 
 
-def _asserted(linked: Linked, bodies: Collection[Process]) -> dict[str, Place | None]:
-    """The situations that bodies assert, themselves or through definitions, as far as the text names them."""
-    own = [call for body in bodies for call in calls(body)]
-    through = reachable(linked.calls, _called(linked, bodies))
-    found: dict[str, Place | None] = {}
-    for call in (*own, *(c for number in through for c in linked.facts[number].calls)):
+def _calls_of(services: Iterable[Service]) -> Iterator[Call]:
+    return (call for service in services for call in calls(service.body))
+
+
+def _steps(linked: Linked, found: Iterable[Call]) -> dict[Node, Place | None]:
+    """The situations that these calls assert, as far as the text names them, and the definitions they
+    select."""
+    steps: dict[Node, Place | None] = {}
+    for call in found:
         name = _name(call.arguments[0]) if call.name in ASSERTING and call.arguments else None
         if name is not None:
-            found.setdefault(name, call.place)
-    return found
+            steps.setdefault(name, call.place)
+        for target in linked.targets(call):
+            steps.setdefault(target, call.place)
+    return steps
 
 
-def _asserted_below(name: str, above: str, place: Place | None) -> Diagnostic:
+def _asserted_below(name: str, way: list[str], place: Place | None) -> Diagnostic:
     message = f"situation {name} is asserted from below itself"
-    through = "" if above == name else f" (here from below {above})"
-    hint = f"its `:;` would wait for itself{through}; serve it with SIT[{name}]<k> :: …"
+    hint = f"its `:;` would wait for itself ({' → '.join(way)}); serve it with SIT[{name}]<k> :: …"
     return error(place, "asserted-below-itself", message, hint)
 
 

@@ -59,16 +59,12 @@ class Basic:
         self._limit = process.limit
         self._low = process.signature.window[0] if process.signature.window else 0.0
         self._checks = tuple((i, _CHECKS[k]) for i, k in enumerate(process.signature.inputs) if k in _CHECKS)
-        self._plain = (
-            STOPPED if not process.signature.results and "stop" in process.signature.outcomes else None
-        )
+        self._plain = STOPPED if not process.signature.results and "stop" in process.signature.outcomes else None
 
     def start(self, strand: Strand, arguments: tuple[Value, ...]) -> Outcome | None:
         for position, check in self._checks:
             if position < len(arguments) and not check(arguments[position]):
-                self._kernel.note(
-                    "mistake", name=self.name, place=str(strand.site), arguments=repr(arguments)
-                )
+                self._kernel.note("mistake", name=self.name, place=str(strand.site), arguments=repr(arguments))
                 return Outcome(False, cause="error")
         try:
             begun = self._routine(*arguments)
@@ -183,9 +179,7 @@ class Run:
         scheduler = self._basic._kernel.scheduler
         if self._deadline is None:
             limit = self._basic._limit
-            self._deadline = scheduler.call_at(
-                self._begun + limit + ROUNDING * max(1.0, limit), self._too_late
-            )
+            self._deadline = scheduler.call_at(self._begun + limit + ROUNDING * max(1.0, limit), self._too_late)
         self._timed = False
         match wanted:
             case Signal():
@@ -200,6 +194,8 @@ class Run:
                 return self._misused(wanted)
             case int() | float() | sleep():
                 seconds = wanted.seconds if isinstance(wanted, sleep) else wanted
+                if not seconds >= 0:
+                    return self._misused(wanted)
                 self._timer = scheduler.call_after(seconds, self._time)
             case _:
                 return self._misused(wanted)

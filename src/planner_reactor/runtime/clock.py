@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import threading
 import time
-from math import inf
 from typing import Protocol
 
 
@@ -24,7 +23,7 @@ class Clock(Protocol):
         """The present instant, seconds; what jumps has none of its own: 0."""
 
     def reach(self, when: float) -> None:
-        """Wait for the instant `when` (`inf`: for ever), or until interrupted."""
+        """Wait for the instant `when`, or until interrupted."""
 
     def interrupt(self) -> None:
         """End the present wait, or the next one at once. May be called from any thread."""
@@ -60,7 +59,7 @@ class WallClock:
         return time.monotonic() - self._origin
 
     def reach(self, when: float) -> None:
-        if self._woken.wait(None if when == inf else max(0.0, when - self.read())):
+        if self._woken.wait(min(max(0.0, when - self.read()), threading.TIMEOUT_MAX)):
             self._woken.clear()
 
     def interrupt(self) -> None:

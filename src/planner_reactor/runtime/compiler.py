@@ -60,12 +60,8 @@ class Compiler:
         self.functions = functions
         self.ports = Ports()
         self.definitions = Definitions(self.schema)
-        self.part = _ends(
-            forks.PartEnd(kernel, ok=True, settles=True), forks.PartEnd(kernel, ok=False, settles=False)
-        )
-        self.share = _ends(
-            forks.PartEnd(kernel, ok=True, settles=False), forks.PartEnd(kernel, ok=False, settles=True)
-        )
+        self.part = _ends(forks.PartEnd(kernel, ok=True, settles=True), forks.PartEnd(kernel, ok=False, settles=False))
+        self.share = _ends(forks.PartEnd(kernel, ok=True, settles=False), forks.PartEnd(kernel, ok=False, settles=True))
         self.rival = _ends(forks.RivalEnd(kernel, ok=True), forks.RivalEnd(kernel, ok=False))
         self.spawned = _ends(forks.BodyEnd(kernel, ok=True), forks.BodyEnd(kernel, ok=False))
         self.head = forks.HeadEnd(kernel)
@@ -191,9 +187,7 @@ class _Body:
         first: bool,
     ) -> Instruction:
         entries = tuple(self.process(p, region, ends, where) for p in parts)
-        return forks.ForkParts(
-            self.kernel, entries, ok=exits.ok, ab=exits.ab, first=first, decisive=False, where=where
-        )
+        return forks.ForkParts(self.kernel, entries, ok=exits.ok, ab=exits.ab, first=first, decisive=False, where=where)
 
     def rivals(self, parts: tuple[Process, ...], region: Region, exits: Exits, where: Where) -> Instruction:
         """`#`: each part binds in a region of its own, of which the winner's bindings leave."""

@@ -73,6 +73,7 @@ class Executer:
         self._compiler = Compiler(self._kernel, by_name, host.functions if host else {})
         self._told = on_end
         self._count = 0
+        self._running = False
         self._kernel.on_end = self._ended
         if trace is not None:
             self._kernel.note = lambda kind, **fields: trace.record(kind, **fields)
@@ -97,9 +98,13 @@ class Executer:
 
     def run(self, until: float | None = None) -> None:
         """Run until all roots have ended, nothing is left to do, or the instant `until` (seconds) is past."""
-        self._kernel.arm()
-        if any(root.outcome is None for root in self.roots):
-            self.scheduler.run(until)
+        if self.roots:
+            self._kernel.arm()
+            self._running = True
+            try:
+                self.scheduler.run(until)
+            finally:
+                self._running = False
 
     def kill(self, root: Root) -> None:
         """Abort a root, as soon as the present step is over."""
@@ -198,5 +203,5 @@ class Executer:
         self.roots.remove(root)
         if self._told is not None:
             self._told(root)
-        if not self.roots:
+        if self._running and not self.roots:
             self.scheduler.stop()

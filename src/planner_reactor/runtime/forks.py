@@ -143,8 +143,7 @@ class RivalEnd:
         fork.ended.append((strand.index, self.ok, strand.cause))
         kernel.live -= 1
         strand.release()
-        if not fork.decided:
-            kernel.undecided(fork)
+        kernel.verdicts.add(fork)
         return None
 
 

@@ -154,9 +154,7 @@ def _limit(name: str, window: tuple[float, float], limit: float | None) -> float
         raise InputError(f"{name}: its window must be (low, high) with 0 <= low <= high, not {window}")
     longest = high if limit is None else limit
     if not isfinite(longest) or longest < low:
-        raise InputError(
-            f"{name}: give a finite end of its window, or a limit (seconds) beyond its beginning"
-        )
+        raise InputError(f"{name}: give a finite end of its window, or a limit (seconds) beyond its beginning")
     return longest
 
 

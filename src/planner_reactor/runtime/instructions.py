@@ -14,6 +14,7 @@ from planner_reactor.rs.expressions import EvaluationError
 from planner_reactor.rs.terms import Value
 from planner_reactor.runtime.definitions import Definition
 from planner_reactor.runtime.kernel import Kernel
+from planner_reactor.runtime.killing import close
 from planner_reactor.runtime.outcomes import OpensBody
 from planner_reactor.runtime.strands import NOWHERE, UNBOUND, Body, Instruction, Strand, Where
 from planner_reactor.runtime.values import Frames, Tuples
@@ -205,16 +206,14 @@ class CloseBody:
         strand.frame[self.slot] = UNBOUND
         leave(strand, body)
         kernel = self.kernel
-        kernel.close(body, "stop" if self.ok else "abort")
+        close(kernel, body, "stop" if self.ok else "abort")
         if kernel.silent:
             kernel.queue(strand, self.onward)
             return None
         return self.onward
 
 
-def enter(
-    kernel: Kernel, strand: Strand, opener: OpensBody, context: object, slot: int, close: Instruction
-) -> None:
+def enter(kernel: Kernel, strand: Strand, opener: OpensBody, context: object, slot: int, close: Instruction) -> None:
     """A body begins in this strand."""
     body = Body(context, strand.body, strand, opener, close)
     strand.frame[slot] = body

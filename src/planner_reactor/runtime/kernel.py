@@ -14,35 +14,30 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable
-from heapq import heappop, heappush
 from typing import Any
 
 from planner_reactor.rs.terms import Value
 from planner_reactor.runtime.budgets import Budgets
+from planner_reactor.runtime.killing import abort_body, kill
 from planner_reactor.runtime.outcomes import Observer
-from planner_reactor.runtime.scheduler import Entry, Scheduler
+from planner_reactor.runtime.pause import Pause
+from planner_reactor.runtime.scheduler import Scheduler
 from planner_reactor.runtime.strands import (
-    FORKED,
-    NOWHERE,
-    OVER,
     READY,
     RUNNING,
     SILENT,
-    UNBOUND,
     WAITING,
     WOKEN,
-    Body,
     Fork,
     Instruction,
     Root,
     Strand,
 )
+from planner_reactor.runtime.verdicts import Verdicts, is_void, verdict
 
 
 class Kernel:
-    """Queues, verdicts, killing, counters. Instructions hold a reference to it; nothing outside `runtime`
-    does.
-    """
+    """Queues and counters. Instructions hold a reference to it; nothing outside `runtime` does."""
 
     def __init__(self, scheduler: Scheduler, budgets: Budgets, observer: Observer | None) -> None:
         self.scheduler = scheduler
@@ -60,8 +55,8 @@ class Kernel:
         self.zeno: str | None = None
         self._slice = range(budgets.slice)
         self._patience = range(budgets.turns)
-        self._undecided: list[Fork] = []
-        self._ranked: list[tuple[int, tuple[int, ...], Fork]] = []
+        self.verdicts = Verdicts()
+        self._undecided = self.verdicts.new
         self.watched: dict[Value, Callable[[], object]] = {}
         self._moved: dict[Value, None] = {}
         self._later: deque[Callable[[], object]] = deque()
@@ -89,6 +84,14 @@ class Kernel:
         meter.turns += self.budgets.slice - 1
         self.advance(strand, following)
 
+    def _retry(self, strand: Strand) -> None:
+        """The control in which the strand waits is started again: it cannot be put off, it knows the
+        strand.
+        """
+        strand.state = RUNNING
+        if (following := strand.pc.run(strand)) is not None:
+            self.turn(strand, following)
+
     def advance(self, strand: Strand, pc: Instruction | None) -> None:
         """Take a strand to its next leaf, where it will have a turn."""
         for _ in self._patience:
@@ -112,8 +115,8 @@ class Kernel:
                 if strand.state == SILENT:
                     strand.state = RUNNING
                     self.advance(strand, strand.pc)
-            if self._undecided or self._ranked:
-                self._decide(self._next_undecided())
+            if self.verdicts:
+                self.decide(self.verdicts.next())
             elif self._later:
                 self._later.popleft()()
             else:
@@ -133,10 +136,12 @@ class Kernel:
                 if not ready:
                     return
                 strand = ready.popleft()
-                if strand.state == READY or strand.state == WOKEN:  # faster than `in`
+                if strand.state == READY:
                     self.turn(strand, strand.pc)
-                    if self.watched:
-                        self.moved(strand)
+                elif strand.state == WOKEN:
+                    self._retry(strand)
+                if self.watched:
+                    self.moved(strand)
         finally:
             self._draining = False
 
@@ -147,37 +152,27 @@ class Kernel:
             self.scheduler.soon(self.drain)
 
     def resume(self, strand: Strand, pc: Instruction) -> None:
-        """A waiting leaf has ended by itself (a step, already counted): go on behind it, now."""
+        """A waiting leaf has ended by itself (a step, already counted): go on behind it, now.
+
+        For what the scheduler calls; never from within a turn.
+        """
         strand.link = None
-        if self._draining or self.silent:
+        if self.silent:
             self.queue(strand, pc)
             self.arm()
             return
-        self._draining = True
-        try:
-            self.turn(strand, pc)
-        finally:
-            self._draining = False
+        self.turn(strand, pc)
         if self.watched:
             self.moved(strand)
         if self.silent or self.ready or self._undecided or self._later:
             self.drain()
 
     def communicated(self, strand: Strand, pc: Instruction) -> bool:
-        """COM: take the partner to its next leaf, within the step of the one that runs. Is nothing else
-        due?
-        """
+        """COM: take the partner on, within the step of the one that runs. Is nothing else due?"""
         self.steps += 1
         self.rendezvous += 1
         strand.state = RUNNING
-        following = pc.run(strand) if pc.silent else pc
-        if following is not None:
-            if following.silent:
-                self.advance(strand, following)
-            else:
-                strand.pc = following
-                strand.state = READY
-                self.ready.append(strand)
+        self.advance(strand, pc)
         return not (self.silent or self._undecided or self._later)
 
     def queue(self, strand: Strand, pc: Instruction) -> None:
@@ -193,32 +188,17 @@ class Kernel:
             self.ready.append(strand)
             self.arm()
 
-    # -- verdicts of `#`
+    # -- forks
 
-    def undecided(self, fork: Fork) -> None:
-        """A part of this `#` has ended."""
-        fork.decided = True
-        self._undecided.append(fork)
-
-    def _next_undecided(self) -> Fork:
-        """The innermost, leftmost among equals. One is the rule; several are ranked."""
-        if not self._ranked and len(self._undecided) == 1:
-            return self._undecided.pop()
-        for fork in self._undecided:
-            heappush(self._ranked, (-fork.depth, fork.path(), fork))
-        self._undecided.clear()
-        return heappop(self._ranked)[2]
-
-    def _decide(self, fork: Fork) -> None:
-        """N5. `x.r # live Q` = x.r and Q is aborted; both in one step: stop wins, then the leftmost."""
-        parent = fork.parent
-        if parent.state != FORKED or parent.link is not fork:
+    def decide(self, fork: Fork) -> None:
+        """N5. `x.r # live Q` = x.r and Q is aborted; only what the winner has bound leaves."""
+        if is_void(fork):
             return
-        index, ok, cause = min(fork.ended, key=lambda end: (not end[1], end[0]))
-        self.kill(fork.strands())
+        index, ok, cause = verdict(fork)
+        kill(self, fork.strands())
         exits: Any = fork.exits
         if exits.exports:
-            frame = parent.frame
+            frame = fork.parent.frame
             for inner, outer in exits.exports[index]:
                 frame[outer] = frame[inner]
         self.joined(fork, ok, cause)
@@ -231,53 +211,6 @@ class Kernel:
             parent.cause = cause
         self.queue(parent, fork.exits.ok if ok else fork.exits.ab)
 
-    # -- killing (N9)
-
-    def kill(self, strands: list[Strand]) -> None:
-        """Abort these strands and all below them, left to right; a body is closed after its content."""
-        pending: list[Strand | Body] = list(reversed(strands))
-        while pending:
-            item = pending.pop()
-            if isinstance(item, Body):
-                self.close(item, "killed")
-                continue
-            state = item.state
-            if state == OVER:
-                continue
-            link, pc = item.link, item.pc
-            body = item.body
-            opened: list[Strand | Body] = []
-            while body is not None and body.strand is item:
-                opened.append(body)
-                body = body.parent
-            pending.extend(reversed(opened))
-            self.live -= 1
-            item.state = OVER
-            if state == FORKED:
-                pending.extend(reversed(link.strands()))
-            elif state in (WAITING, WOKEN):
-                pc.cancel(item)  # type: ignore[attr-defined]  # only a leaf waits
-            item.release()
-
-    def close(self, body: Body, outcome: str) -> None:
-        self.bodies -= 1
-        body.outcome = outcome
-        body.opener.closed(body)
-
-    def abort_body(self, body: Body, cause: str) -> None:
-        """Abort a body in service: its content is killed, its strand goes on where the body's abort leads."""
-        strand = body.strand
-        if strand.state == FORKED:
-            self.kill(strand.link.strands())
-        while strand.body is not None and strand.body is not body:
-            self.close(strand.body, "killed")
-            strand.body = strand.body.parent
-        strand.frame = body.frame
-        strand.stack = body.stack
-        strand.link = None
-        strand.cause = cause
-        self.queue(strand, body.close)
-
     # -- budgets
 
     def overrun(self, strand: Strand, onward: Instruction) -> None:
@@ -288,9 +221,9 @@ class Kernel:
 
     def curb(self, strand: Strand, onward: Instruction) -> None:
         if strand.body is not None:
-            self.abort_body(strand.body, "budget")
+            abort_body(self, strand.body, "budget")
             return
-        strand.pc = pause = Pause(self, onward)
+        strand.pc = pause = Pause(self.scheduler, self.resume, onward)
         strand.link = entry = (pause, strand)
         strand.state = WAITING
         self.scheduler.wait(self.scheduler.now + self.budgets.quantum, entry)
@@ -301,7 +234,7 @@ class Kernel:
         strand.cause = "budget"
         if strand.body is None:
             return ab
-        self.abort_body(strand.body, "budget")
+        abort_body(self, strand.body, "budget")
         return None
 
     # -- what waits for something to come to rest
@@ -337,7 +270,7 @@ class Kernel:
         strand = root.strand
         if strand is not None:
             root.outcome, root.cause, root.strand = "abort", "cancelled", None
-            self.kill([strand])
+            kill(self, [strand])
             self.on_end(root)
 
     def ended(self, root: Root, strand: Strand, *, ok: bool) -> None:
@@ -348,37 +281,3 @@ class Kernel:
         self.live -= 1
         strand.release()
         self.on_end(root)
-
-
-class Pause:
-    """Where a strand stands that waits one quantum before its next round."""
-
-    __slots__ = ("_kernel", "_onward")
-    silent = False
-    where = NOWHERE
-    resting = False
-
-    def __init__(self, kernel: Kernel, onward: Instruction) -> None:
-        self._kernel = kernel
-        self._onward = onward
-
-    def run(self, strand: Strand) -> Instruction | None:
-        return self._onward
-
-    def elapsed(self, entry: Entry) -> None:
-        if self.awaits(entry):
-            self._kernel.resume(entry[1], self._onward)
-
-    def awaits(self, entry: Entry) -> bool:
-        return entry[1].link is entry
-
-    def cancel(self, strand: Strand) -> None:
-        strand.link = None
-        self._kernel.scheduler.withdrawn()
-
-
-def unbind(strand: Strand, slots: tuple[int, ...]) -> None:
-    """Forget these bindings."""
-    frame = strand.frame
-    for slot in slots:
-        frame[slot] = UNBOUND

@@ -9,9 +9,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 from planner_reactor.rs.expressions import EvaluationError, is_number
-from planner_reactor.rs.terms import Expression, Value
+from planner_reactor.rs.terms import Expression, Number, Value, Variable
 from planner_reactor.runtime.instructions import enter
 from planner_reactor.runtime.kernel import Kernel
 from planner_reactor.runtime.outcomes import STOPPED, Control, OpensBody, Outcome
@@ -130,7 +131,7 @@ class Ran:
 class Pass:
     """Delay, SUSPEND, Term: stops when its time has passed. `adapt` gives the age at which this one ends."""
 
-    __slots__ = ("_adapt", "_age", "_scheduler", "kernel", "ok", "setting", "where")
+    __slots__ = ("_adapt", "_age", "_fixed", "_scheduler", "_slot", "kernel", "ok", "setting", "where")
     silent = False
     resting = False
 
@@ -142,23 +143,28 @@ class Pass:
         self._adapt = adapt
         self._scheduler = setting.kernel.scheduler
         (self._age,) = setting.readers
+        (term,) = setting.terms
+        self._fixed = term.value if isinstance(term, Number) else None
+        self._slot = setting.slots(term.name) if isinstance(term, Variable) else -1
 
     def run(self, strand: Strand) -> Instruction | None:
-        try:
-            age = self._age(strand.frame)
-        except EvaluationError:
-            return self.setting.failed.run(strand)
-        if age.__class__ is not float and age.__class__ is not int and not is_number(age):
-            return self._ended(strand, ok=False)
+        age: Any = self._fixed if self._slot < 0 else strand.frame[self._slot]
+        if age.__class__ is not float and age.__class__ is not int:
+            try:
+                age = self._age(strand.frame)
+            except EvaluationError:
+                return self.setting.failed.run(strand)
+            if not is_number(age):
+                return self._ended(strand, ok=False)
         if self._adapt is not None:
-            age = self._adapt(age, self.kernel)  # type: ignore[arg-type]
-        if age <= 0:  # type: ignore[operator]
+            age = self._adapt(age, self.kernel)
+        if age <= 0:
             return self._ended(strand, ok=True)
         scheduler = self._scheduler
         strand.pc = self
         strand.state = WAITING
         strand.link = entry = (self, strand)
-        scheduler.wait(scheduler.now + age, entry)  # type: ignore[operator]
+        scheduler.wait(scheduler.now + age, entry)
         return None
 
     def elapsed(self, entry: Entry) -> None:

@@ -12,15 +12,18 @@ coincide.
 from __future__ import annotations
 
 import random
+import sys
 from collections import deque
 from collections.abc import Callable
 from heapq import heapify, heappop, heappush
-from math import inf
 from typing import Any, Protocol, TypeAlias
 
 from planner_reactor.runtime.clock import Clock
 
 Action = Callable[[], object]
+
+END_OF_TIME = sys.float_info.max
+"""What waits for a later instant waits for ever."""
 
 SWEEP_FROM = 512
 """Cancelled entries that may lie in the queue before it is first swept."""
@@ -109,9 +112,8 @@ class Scheduler:
 
     def wait(self, when: float, entry: Entry) -> None:
         """Tell the entry at this instant, which is not past (cheaper than a Timer)."""
-        bucket = self._buckets.get(when)
-        if bucket is None:
-            self._buckets[when] = entry
+        bucket = self._buckets.setdefault(when, entry)
+        if bucket is entry:
             heappush(self._instants, when)
         elif isinstance(bucket, list):
             bucket.append(entry)
@@ -125,16 +127,16 @@ class Scheduler:
             self._sweep()
 
     def _sweep(self) -> None:
-        kept: dict[float, Entry | list[Entry]] = {}
         count = 0
-        for when, bucket in self._buckets.items():
+        for when, bucket in list(self._buckets.items()):
             entries = bucket if isinstance(bucket, list) else [bucket]
             awaited = [entry for entry in entries if entry[0].awaits(entry)]
+            count += len(awaited)
             if awaited:
-                kept[when] = awaited
-                count += len(awaited)
-        self._buckets = kept
-        self._instants[:] = kept
+                self._buckets[when] = awaited
+            else:
+                del self._buckets[when]
+        self._instants[:] = self._buckets
         heapify(self._instants)
         self._stale = 0
         self._sweep_at = max(SWEEP_FROM, count)
@@ -156,30 +158,31 @@ class Scheduler:
         left to do. On the wall clock without `until` it waits for what is posted, until `stop`.
         """
         self._stopped = False
-        limit = inf if until is None else until
+        limit = END_OF_TIME if until is None else until
         if self.clock.jumps:
             self._run_jumping(limit)
         else:
             self._run_waiting(limit)
 
     def _run_jumping(self, limit: float) -> None:
-        soon, instants = self._soon, self._instants
+        soon, instants, buckets, present = self._soon, self._instants, self._buckets, self._present
         while not self._stopped:
             if soon:
                 soon.popleft()()
                 continue
-            if self._present:
-                entry = self._present.pop()
-            elif instants and instants[0] <= limit:
-                self.now = when = heappop(instants)
-                bucket = self._buckets.pop(when)
+            if present:
+                entry = present.pop()
+            elif instants and (when := instants[0]) <= limit:
+                heappop(instants)
+                self.now = when
+                bucket = buckets.pop(when)
                 if isinstance(bucket, list):
-                    bucket.reverse()
-                    self._present = bucket
+                    present = self._present = bucket
+                    present.reverse()
                     continue
                 entry = bucket
             else:
-                if limit < inf:
+                if limit < END_OF_TIME:
                     self.now = max(self.now, limit)
                 return
             entry[0].elapsed(entry)
@@ -199,7 +202,7 @@ class Scheduler:
             elif not soon:
                 if self.now >= limit:
                     return
-                clock.reach(min(limit, instants[0] if instants else inf))
+                clock.reach(min(limit, instants[0]) if instants else limit)
 
     @property
     def idle(self) -> bool:

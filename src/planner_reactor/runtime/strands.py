@@ -128,7 +128,7 @@ class Strand:
         """Clear every link: the strand is over."""
         self.state = OVER
         self.frame = _NOTHING
-        self.stack = self.fork = self.link = self.value = None
+        self.stack = self.fork = self.body = self.link = self.value = None
 
 
 class Fork:
@@ -141,8 +141,8 @@ class Fork:
     __slots__ = (
         "bodies",
         "cause",
-        "decided",
         "depth",
+        "due",
         "ended",
         "exits",
         "live",
@@ -163,7 +163,7 @@ class Fork:
         self.ok = ok
         self.cause: tuple[int, str] | None = None  # of the leftmost part that aborted
         self.ended: list[tuple[int, bool, str]] = []  # parts of a `#` that have ended: index, outcome, cause
-        self.decided = False
+        self.due = False  # does it wait for its verdict?
 
     def strands(self) -> list[Strand]:
         """Its live strands, left to right."""
@@ -211,9 +211,7 @@ class Body:
         "turns",
     )
 
-    def __init__(
-        self, context: object, parent: Body | None, strand: Strand, opener: Any, close: Instruction
-    ) -> None:
+    def __init__(self, context: object, parent: Body | None, strand: Strand, opener: Any, close: Instruction) -> None:
         self.context = context
         self.parent = parent
         self.strand = strand
@@ -224,6 +222,11 @@ class Body:
         self.outcome: str | None = None
         self.turns = 0
         self.instant = -1.0
+
+    def release(self) -> None:
+        """Clear the links that would make cyclic garbage."""
+        self.frame = _NOTHING
+        self.stack = None
 
     def enclosing(self) -> Iterator[Body]:
         """This body and those around it, innermost first."""

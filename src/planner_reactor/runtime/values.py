@@ -44,9 +44,7 @@ def reader(expression: Expression, slots: Slots, functions: Functions) -> Reader
         case Variable(name):
             return _variable(name, slots(name))
         case Operation("+" | "-" as sign, Variable(name), Number(int(step))) if slots(name) >= 0:
-            return _shifted(
-                slots(name), step if sign == "+" else -step, _general(expression, slots, functions)
-            )
+            return _shifted(slots(name), step if sign == "+" else -step, _general(expression, slots, functions))
         case _:
             return _general(expression, slots, functions)
 
