@@ -96,10 +96,11 @@ def _below_itself(linked: Linked) -> Iterator[Diagnostic]:
     for cycle in cycles(below):
         together = set(cycle)
         asserted = {s: place for node in cycle for s, place in below[node].items() if s in together}
-        for node, place in asserted.items():
-            if isinstance(node, str) and not any(service.spawns for service in services[node]):
-                way = [n for n in way_round(below, node) if isinstance(n, str)]
-                yield _asserted_below(node, way, place)
+        wrong = (s for s in asserted if isinstance(s, str) and not any(v.spawns for v in services[s]))
+        name = next(wrong, None)  # one for each cycle: the way round names the others
+        if name is not None:
+            way = [node for node in way_round(below, name) if isinstance(node, str)]
+            yield _asserted_below(name, way, asserted[name])
 
 
 def _calls_of(services: Iterable[Service]) -> Iterator[Call]:
