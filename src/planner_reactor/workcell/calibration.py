@@ -2,8 +2,7 @@
 
 They are pinned here, and nowhere else: a pick and place takes about 6.5 s, as the physics cell of the
 prototype did. A duration is a mean; the arm varies each by `spread` (uniform, from its own random stream).
-`windows` turns them into the age windows that the basic processes declare, which bound every safe adaptation
-(R §5.5).
+`host` makes of them the age windows that the basic processes declare, which bound every safe adaptation.
 
 Legend: `patience_s` how long a process waits for something to appear before it aborts; `starved_s` after how
 long a wait counts as starvation; `quiet_s` how long evidence against an assumption counts.
