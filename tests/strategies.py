@@ -92,9 +92,7 @@ class Tape:
             return Negative(self.expression(variables, depth - 1))
         if form == "operation":
             sign = self.choose(ARITHMETIC + COMPARISON)
-            return Operation(
-                sign, self.expression(variables, depth - 1), self.expression(variables, depth - 1)
-            )
+            return Operation(sign, self.expression(variables, depth - 1), self.expression(variables, depth - 1))
         return Apply(self.choose(FUNCTIONS), self.expressions(variables, depth - 1))
 
     def expressions(self, variables: Sequence[str], depth: int = 2) -> tuple[Expression, ...]:
@@ -171,9 +169,7 @@ def processes(
     return tapes().map(grown)
 
 
-def programs(
-    *, depth: int = 3, operators: tuple[type[Process], ...] = OPERATORS
-) -> st.SearchStrategy[Program]:
+def programs(*, depth: int = 3, operators: tuple[type[Process], ...] = OPERATORS) -> st.SearchStrategy[Program]:
     """Programs without static errors under the signatures of `HOST`: definitions D1, D2, … that call later
     ones; some are clauses told apart by their first argument."""
 
@@ -216,9 +212,7 @@ def _calling(heads: Sequence[tuple[Scope, int]], number: int) -> Leaf:
 class _Growth:
     """Grows one process from a tape."""
 
-    def __init__(
-        self, tape: Tape, operators: tuple[type[Process], ...], leaf: Leaf, guarded: bool
-    ) -> None:
+    def __init__(self, tape: Tape, operators: tuple[type[Process], ...], leaf: Leaf, guarded: bool) -> None:
         self._tape = tape
         self._operators = operators
         self._leaf = leaf

@@ -23,9 +23,7 @@ def places(text: str, *codes: str, **options: Any) -> list[tuple[int, int]]:
 
 def messages(text: str, *codes: str, **options: Any) -> list[str]:
     """The findings as `message, hint`."""
-    return [
-        f"{f.message}, {f.hint}" if f.hint else f.message for f in findings(text, *codes, **options)
-    ]
+    return [f"{f.message}, {f.hint}" if f.hint else f.message for f in findings(text, *codes, **options)]
 
 
 def errors(text: str, **options: Any) -> list[str]:

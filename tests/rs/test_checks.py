@@ -13,11 +13,7 @@ from tests.rs.findings import findings
 
 def test_a_finding_reads_as_file_line_column_what_hint_and_shows_the_line() -> None:
     (found,) = check_text("P = Delay[1]\n  ; Dleay[2]", "cell.rsl")
-    assert str(found) == (
-        "cell.rsl:2:5: unknown process Dleay, did you mean Delay?\n"
-        "      ; Dleay[2]\n"
-        "        ^"
-    )
+    assert str(found) == ("cell.rsl:2:5: unknown process Dleay, did you mean Delay?\n      ; Dleay[2]\n        ^")
 
 
 def test_findings_stand_in_the_order_of_the_text() -> None:

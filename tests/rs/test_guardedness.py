@@ -73,8 +73,7 @@ def test_recursion_that_no_step_guards(text: str) -> None:
 
 def test_the_way_round_is_shown() -> None:
     assert messages("A = Act[1] : B\nB = C\nC = STOP ; (Act[2] | D)\nD = B", *CODES) == [
-        "B calls itself before it takes a step (B → C → D → B), "
-        "put a process that takes a step before the call"
+        "B calls itself before it takes a step (B → C → D → B), put a process that takes a step before the call"
     ]
 
 

@@ -99,9 +99,7 @@ def test_an_addition_is_wrong_exactly_if_the_whole_is_wrong(program: Program, fi
     """If what is there passed the checks, looking at the addition alone misses nothing."""
     there, added = Program(program.schemas[:first]), Program(program.schemas[first:])
     assume(not broken(check(there, signatures=HOST)))
-    assert bool(broken(check_addition(there, added, signatures=HOST))) == bool(
-        broken(check(program, signatures=HOST))
-    )
+    assert bool(broken(check_addition(there, added, signatures=HOST))) == bool(broken(check(program, signatures=HOST)))
 
 
 def test_a_process_is_loaded_beside_the_definitions_that_it_calls() -> None:

@@ -39,7 +39,7 @@ CASES = [
     ("P = Move<x>[y]", 12, "`[` after results", "arguments stand before results: Name[…]<…>"),
     ("P = A[f[1]]", 8, "`[` after f in an argument", "a function takes its arguments in parentheses: f(…)"),
     ("P = A[x = 1]", 9, "`=` in an argument", "`==` compares"),
-    ("P = A[1,]", 9, "`]` where an argument should stand", "expected a number, a name, a \"string\", f(…)"),
+    ("P = A[1,]", 9, "`]` where an argument should stand", 'expected a number, a name, a "string", f(…)'),
     ("P = A[1 2]", 9, "expected `]`, found `2`", "to close the `[` at 1:6"),
     ("P = A[(1]", 9, "expected `)`, found `]`", "to close the `(` at 1:7"),
     ("P = A[a < b < c]", 13, "`<` and `<` do not chain", "put parentheses around it"),
@@ -60,9 +60,7 @@ CASES = [
 
 
 @pytest.mark.parametrize(("text", "column", "message", "hint"), CASES, ids=[case[0] for case in CASES])
-def test_an_error_says_where_what_and_what_was_expected(
-    text: str, column: int, message: str, hint: str
-) -> None:
+def test_an_error_says_where_what_and_what_was_expected(text: str, column: int, message: str, hint: str) -> None:
     found = errors(text)[0]
     assert (found.severity, found.code) == ("error", "syntax")
     assert (found.place.line, found.place.column) == (1, column)

@@ -155,7 +155,7 @@ def _string(token: Cursor) -> str:
     try:
         text: str = json.loads(token.text)
     except ValueError:
-        hint = r'expected \" \\ \/ \b \f \n \r \t or \u1234'
+        hint = r"expected \" \\ \/ \b \f \n \r \t or \u1234"
         raise token.error("syntax", "this string has a wrong escape", hint) from None
     token.advance()
     return text

@@ -138,9 +138,7 @@ def _number_needed(linked: Linked, number: int, call: Call, operand: Expression)
         yield from _misfit(linked, number, call, operand, EXPECTED["number"])
 
 
-def _misfit(
-    linked: Linked, number: int, call: Call, argument: Expression, expected: str
-) -> Iterator[Diagnostic]:
+def _misfit(linked: Linked, number: int, call: Call, argument: Expression, expected: str) -> Iterator[Diagnostic]:
     place, hint = call.place, ""
     if isinstance(argument, Symbol):
         binders = linked.facts[number].binders

@@ -129,7 +129,5 @@ def check_text(
     program, found = read_program(text, file=file)
     if any(f.severity == "error" for f in found):
         return found
-    static = check(
-        program, signatures=signatures, functions=functions, roots=roots, ports=ports, complete=True
-    )
+    static = check(program, signatures=signatures, functions=functions, roots=roots, ports=ports, complete=True)
     return Source(text, file).shown([*found, *static])

@@ -63,9 +63,7 @@ def evaluate(
         case Negative(operand):
             return _arithmetic("-", 0, evaluate(operand, environment, functions))
         case Operation(sign, left, right):
-            return _operation(
-                sign, evaluate(left, environment, functions), evaluate(right, environment, functions)
-            )
+            return _operation(sign, evaluate(left, environment, functions), evaluate(right, environment, functions))
         case Apply(function, arguments):
             return _apply(function, [evaluate(a, environment, functions) for a in arguments], functions)
 

@@ -15,9 +15,7 @@ N = TypeVar("N", bound=Hashable)
 V = TypeVar("V")
 
 
-def reachable(
-    edges: Mapping[N, Iterable[N]], starts: Iterable[N], *, but: Collection[N] = ()
-) -> dict[N, None]:
+def reachable(edges: Mapping[N, Iterable[N]], starts: Iterable[N], *, but: Collection[N] = ()) -> dict[N, None]:
     """All that can be reached from `starts`, which are included, through nodes not in `but`; in order of
     discovery."""
     found = dict.fromkeys(starts)
@@ -62,9 +60,7 @@ def way_round(edges: Mapping[N, Iterable[N]], start: N) -> list[N]:
     return way[::-1]
 
 
-def solve(
-    edges: Mapping[N, Iterable[N]], start: V, transfer: Callable[[N, Mapping[N, V]], V]
-) -> Mapping[N, V]:
+def solve(edges: Mapping[N, Iterable[N]], start: V, transfer: Callable[[N, Mapping[N, V]], V]) -> Mapping[N, V]:
     """The first solution, from `start` on, of value(n) = transfer(n, values), where transfer reads the values
     of what follows n. It must be monotone."""
     leading_here = _backwards(edges)

@@ -2,8 +2,8 @@
 
 A `Linked` program numbers the definitions of a program in their order and answers which of them a call may
 select, given the constants among its arguments. Names of basic and built-in processes refer to their
-signatures, whatever a text defines. An *open family* is a name X used as in equation (3) of R §5.3, `ADD<k>
-:: (E[k] # X[k])`: its clauses are added while the program runs, so that there may be none yet.
+signatures, whatever a text defines. An *open family* is a name X used as in equation (3) of R §5.3,
+`ADD<k> :: (E[k] # X[k])`: its clauses are added while the program runs, so that there may be none yet.
 
 A running program is checked anew with every addition. Only the added definitions, its `focus`, are then
 looked at, and those that they lead to; what was there before cannot call what it did not know.

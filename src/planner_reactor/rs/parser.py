@@ -35,6 +35,30 @@ from planner_reactor.rs.terms import (
 )
 from planner_reactor.rs.tokens import BUDGETS, EXCEEDED, Budgets, Cursor
 
+AFTER = {
+    ")": "no parenthesis is open here",
+    "]": "no bracket is open here",
+    "then": "no `if` is open here",
+    "else": "no `if` is open here",
+    ",": "processes are composed by `;` `:` `|` `&` `#` `:;` `::`",
+}
+
+MIXED = (
+    "`:` and `;` are mixed without parentheses",
+    "`:` binds tighter: A:B;C is (A:B);C, and A;B:C is A;(B:C)",
+)
+
+BUILD: Mapping[str, Callable[[list[Process]], Process]] = {
+    "|": lambda parts: Par(tuple(parts)),
+    "&": lambda parts: All(tuple(parts)),
+    "#": lambda parts: Disable(tuple(parts)),
+    ";": lambda parts: seq(*parts),
+    ":": lambda parts: cond(*parts),
+    ":;": lambda parts: Loop(*parts),
+    "::": lambda parts: Spawn(*parts),
+}
+"""From an operator and its operands to a term, flattened as `terms` has it."""
+
 
 def parse_program(text: str, *, file: str = "<text>", budgets: Budgets = BUDGETS) -> Program:
     """The definitions in `text`, names bound; raises `RSError` with every error found."""
@@ -45,9 +69,7 @@ def parse_program(text: str, *, file: str = "<text>", budgets: Budgets = BUDGETS
     return program
 
 
-def parse_process(
-    text: str, *, bound: Iterable[str] = (), file: str = "<text>", budgets: Budgets = BUDGETS
-) -> Process:
+def parse_process(text: str, *, bound: Iterable[str] = (), file: str = "<text>", budgets: Budgets = BUDGETS) -> Process:
     """One process; the names in `bound` are variables. Raises `RSError`."""
     source = Source(text, file)
     parser = _Parser(source, budgets)
@@ -127,7 +149,7 @@ class _Parser:
             raise token.error("syntax", f"expected `=` after {name}, found {token.found()}", hint)
         token.advance()
         body = self._process()
-        if token.kind != "end" and token.kind != "name":
+        if token.kind not in ("end", "name"):
             raise self._left_over()
         return Schema(name, head, results, body, place)
 
@@ -224,27 +246,3 @@ class _Parser:
         token = self._token
         hint = AFTER.get(token.text, "expected an operator, or the next definition")
         return token.error("syntax", f"{token.found()} after the end of a process", hint)
-
-
-AFTER = {
-    ")": "no parenthesis is open here",
-    "]": "no bracket is open here",
-    "then": "no `if` is open here",
-    "else": "no `if` is open here",
-    ",": "processes are composed by `;` `:` `|` `&` `#` `:;` `::`",
-}
-
-MIXED = (
-    "`:` and `;` are mixed without parentheses",
-    "`:` binds tighter: A:B;C is (A:B);C, and A;B:C is A;(B:C)",
-)
-
-BUILD: Mapping[str, Callable[[list[Process]], Process]] = {
-    "|": lambda parts: Par(tuple(parts)),
-    "&": lambda parts: All(tuple(parts)),
-    "#": lambda parts: Disable(tuple(parts)),
-    ";": lambda parts: seq(*parts),
-    ":": lambda parts: cond(*parts),
-    ":;": lambda parts: Loop(*parts),
-    "::": lambda parts: Spawn(*parts),
-}

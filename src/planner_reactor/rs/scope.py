@@ -57,9 +57,7 @@ def resolve(schema: Schema, *, depth: int) -> tuple[Schema, list[Diagnostic]]:
     return replace(schema, body=body), resolver.findings
 
 
-def resolve_process(
-    process: Process, *, bound: Iterable[str], depth: int
-) -> tuple[Process, list[Diagnostic]]:
+def resolve_process(process: Process, *, bound: Iterable[str], depth: int) -> tuple[Process, list[Diagnostic]]:
     """The same for a process alone, within which the names in `bound` are variables."""
     resolver = _Resolver(dict.fromkeys(bound), None, depth)
     try:

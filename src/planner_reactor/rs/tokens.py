@@ -27,8 +27,8 @@ class Budgets:
     deep the resulting term is: every recursive walk of it stays far below Python's limit.
     """
 
-    characters: int = 4_000_000
-    tokens: int = 1_000_000
+    characters: int = 1_000_000
+    tokens: int = 250_000
     nesting: int = 240
     depth: int = 100
     digits: int = 80
@@ -50,6 +50,10 @@ _HINTS = {
     "%": "arithmetic has `+ - * /`, other functions come from the host",
     "‖": "`|` composes processes side by side",
 }
+
+
+OPENS = {")": "(", "]": "[", ">": "<"}
+TOO_DEEP = "give an inner part a name and a definition of its own"
 
 
 class Cursor:
@@ -136,7 +140,3 @@ class Cursor:
             return self.error("syntax", "this is not a number", hint)
         message = "this string has no end" if self.text == '"' else f"`{self.text}` has no meaning in RS"
         return self.error("syntax", message, _HINTS.get(self.text, ""))
-
-
-OPENS = {")": "(", "]": "[", ">": "<"}
-TOO_DEEP = "give an inner part a name and a definition of its own"

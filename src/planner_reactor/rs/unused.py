@@ -50,18 +50,14 @@ def _plausible_roots(linked: Linked) -> list[int]:
 
 def _parameters(linked: Linked, clauses: list[int]) -> Iterator[Diagnostic]:
     """A parameter that one clause ignores may be what another is chosen by, or uses."""
-    wanted = {
-        position
-        for number in clauses
-        for position, head in enumerate(linked.schemas[number].head)
-        if not isinstance(head, Parameter) or head.name.startswith("_") or head.name in _used(linked, number)
-    }
+    wanted: set[int] = set()
+    for number in clauses:
+        used = {name.name for call in linked.facts[number].calls for name in names(call.arguments)}
+        for position, head in enumerate(linked.schemas[number].head):
+            if not isinstance(head, Parameter) or head.name.startswith("_") or head.name in used:
+                wanted.add(position)
     first = linked.schemas[clauses[0]]
     for position, head in enumerate(first.head):
         if isinstance(head, Parameter) and position not in wanted:
             message = f"parameter {head.name} of {first.name} is not used"
             yield warning(first.place, "unused-parameter", message, f"_{head.name} says that it is meant so")
-
-
-def _used(linked: Linked, number: int) -> set[str]:
-    return {name.name for call in linked.facts[number].calls for name in names(call.arguments)}

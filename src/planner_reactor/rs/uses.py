@@ -15,7 +15,7 @@ from typing import TypeAlias
 
 from planner_reactor.errors import Place
 from planner_reactor.rs.graphs import solve
-from planner_reactor.rs.linking import UNKNOWN, Linked, value_of
+from planner_reactor.rs.linking import Linked, value_of
 from planner_reactor.rs.terms import (
     Apply,
     Call,
@@ -69,7 +69,7 @@ def uses(linked: Linked, *, among: Collection[int]) -> Uses:
         for call, position, argument in _arguments(linked, number):
             sinks = sinks_of(linked, known, call, position)
             value = value_of(argument)
-            if isinstance(value, str) and value is not UNKNOWN:
+            if isinstance(value, str):
                 place = argument.place if isinstance(argument, Symbol) else call.place
                 for sink in sinks:
                     found.constants.setdefault(sink, {}).setdefault(value, place)

@@ -16,8 +16,8 @@ from types import MappingProxyType
 from typing import Literal, TypeAlias
 
 Kind: TypeAlias = Literal["number", "symbol", "any", "port", "situation", "instance", "label", "assumption"]
-"""What an argument stands for. "instance" and "label" are numbers given out at run time; the last four but
-those name something: a port, a situation, an assumption, or (any name) a symbol."""
+"""What an argument stands for: a number (instances and labels are numbers given out at run time), a name (of a
+port, a situation, an assumption, or any symbol), or anything."""
 
 BOTH = frozenset({"stop", "abort"})
 STOPS = frozenset({"stop"})
