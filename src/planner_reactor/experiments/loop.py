@@ -167,6 +167,8 @@ class Loop:
         self.trace.record(
             "adaptation_issued", id=adaptation.id, purpose=adaptation.purpose, text=adaptation.definitions,
             kills=adaptation.kills, adds=adaptation.adds, situations=[c.situation for c in adaptation.changes],
+            removed=adaptation.removed, rests_on={c.situation: c.assumptions for c in adaptation.changes},
+            adopts=adaptation.adopts, drops=adaptation.drops, assumption=step.assumption, cause=step.cause,
             assumptions=self.planner.assumptions_in_use,
         )  # fmt: skip
         self.adaptations.send(adaptation)
