@@ -4,9 +4,6 @@ from __future__ import annotations
 
 import pytest
 
-from planner_reactor.rs.parser import parse_program
-from planner_reactor.rs.printer import show
-from planner_reactor.rs.vocabulary import BUILT_IN, NEVER_ENDS
 from tests.rs.findings import errors, findings, messages
 
 CODES = (
@@ -96,21 +93,3 @@ def test_reactions_may_be_added_while_the_program_runs() -> None:
     assert errors("REACTOR = ADD<k> :: (E[k] # P[k])") == []
     assert errors("REACTOR = ADD<k> :: (E[k] # P[k + 1])") == ["unknown-process"]
     assert errors("REACTOR = ADD<k> :: (E[k] # P[k])  X = E[4] # P[4]  P[3] = Act[1]") == ["no-clause"]
-
-
-def test_every_built_in_process_is_declared_under_its_name() -> None:
-    names = """STOP ABORT NIL IN OUT STREAM Delay Term SUSPEND Ran GTR LST Equal
-        ASSERT REASSERT SIT SUCCEED FAIL UPDATE STUB WAIT INHIBIT UNINHIBIT WAITINHIBIT DRAIN
-        KILL E ADD POST DISABLE ENABLE ASSUMONITOR HOLDMONITOR REPORT"""
-    assert set(BUILT_IN) == set(names.split())
-    assert all(signature.name == name for name, signature in BUILT_IN.items())
-    assert BUILT_IN["NIL"].outcomes == NEVER_ENDS
-
-
-def test_usage_is_written_as_a_call() -> None:
-    usage = {name: signature.usage() for name, signature in BUILT_IN.items()}
-    assert usage["SIT"] == "SIT[situation]<k, …>"
-    assert usage["Equal"] == "Equal[any, any, number?]"
-    assert usage["ADD"] == "ADD<m>"
-    assert usage["UPDATE"] == "UPDATE[situation, instance, …]"
-    assert show(parse_program("P = STOP").schemas[0]) == "P = STOP"
