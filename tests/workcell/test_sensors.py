@@ -15,7 +15,7 @@ from planner_reactor.workcell.sensors import Glimpse
 
 from .driving import Rig
 
-ROBOT_SIDE = ("picking", "placing", "looking", "monitors", "memory", "evidence")
+ROBOT_SIDE = ("picking", "placing", "looking", "monitors", "watching", "memory", "evidence")
 TRUTH = ("plant", "things", "belt", "world", "disturbances", "ledger")
 
 

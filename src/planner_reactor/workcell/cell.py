@@ -21,6 +21,7 @@ from planner_reactor.workcell.kit import KitSpec
 from planner_reactor.workcell.memory import Memory, PartRecord, TrayRecord
 from planner_reactor.workcell.plant import Plant
 from planner_reactor.workcell.sensors import Glimpse, Sensors
+from planner_reactor.workcell.watching import TrayWatch
 
 T = TypeVar("T")
 Steps: TypeAlias = Generator[Any, Any, T]
@@ -39,6 +40,7 @@ class Cell:
         self.sensors = Sensors(plant)
         self.memory = Memory(self.kit, self.calibration)
         self.evidence = Evidence(self.scheduler, self.calibration.quiet_s, plant.trace)
+        self.watch = TrayWatch(self.sensors, self.memory, self.evidence, self.kit, self.scheduler)
         self.arm = Arm(plant, self.memory, in_sight=self.in_sight)
         self.arrivals = {kind: Signal(f"{kind} seen") for kind in self.kit.kinds}
         self.refilled: Signal = plant.refilled
@@ -61,6 +63,7 @@ class Cell:
         if glimpses is None:
             self.evidence.note("camera")
             return False
+        self.watch.glance()
         wanted = self.kit.by_kind[kind].wanted
         for record in self.memory.see_all(kind, glimpses, self.scheduler.now):
             self._judge_variant(record, wanted)
@@ -119,6 +122,7 @@ class Cell:
         now = self.scheduler.now
         self.memory.prune(glimpse.kind, now)
         record = self.memory.see(glimpse, now)
+        self.watch.glance()
         self._came(glimpse.kind, now)
         self._judge_variant(record, self.kit.by_kind[glimpse.kind].wanted)
         self.arm.noticed(glimpse.kind)
