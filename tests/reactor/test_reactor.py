@@ -96,6 +96,10 @@ REFUSALS: dict[str, tuple[str, Adaptation]] = {
     "another mode": ("mode", replace(SECOND, mode="versions")),
     "a text that does not parse": ("text", replace(SECOND, definitions="P[4] = SIT[part]<k> :; (")),
     "an unknown process": ("text", replace(SECOND, definitions="P[4] = SIT[part]<k> :; Doo[new, 1]")),
+    "a body whose tail would be cut": (
+        "text",
+        replace(SECOND, definitions="P[4] = (SIT[part]<k> : Do[new, 1]) :; SUCCEED[part, k]"),
+    ),
     "labels other than its definitions": ("labels", replace(SECOND, adds=(5,))),
     "a label that is in use": ("labels", replace(SECOND, definitions="P[2] = NIL", adds=(2,))),
     "a kill of what is not there": ("labels", replace(SECOND, kills=(2, 9))),

@@ -18,7 +18,7 @@ from planner_reactor.errors import RefusedError, RSError
 from planner_reactor.link.messages import Adaptation
 from planner_reactor.reactor.structure import Reaction, children, cycle, reaction_of
 from planner_reactor.rs.loading import load
-from planner_reactor.rs.terms import Schema, Value
+from planner_reactor.rs.terms import Program, Schema, Value
 from planner_reactor.rs.vocabulary import Signature
 
 
@@ -34,6 +34,7 @@ class Standing:
     used_labels: Collection[int]
     signatures: Mapping[str, Signature]
     functions: Mapping[str, Callable[..., Value]]
+    equation: Program  # equation (3), so that what is added is checked as guarded reactions
 
 
 MODES = ("drain",)
@@ -77,6 +78,7 @@ def _definitions(adaptation: Adaptation, standing: Standing) -> tuple[Schema, ..
             file=f"<adaptation {adaptation.id}>",
             signatures=standing.signatures,
             functions=standing.functions,
+            given=standing.equation,
         )
     except RSError as problem:
         raise RefusedError("text", str(problem)) from None

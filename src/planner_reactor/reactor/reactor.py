@@ -29,7 +29,7 @@ from planner_reactor.rs.vocabulary import BUILT_IN
 from planner_reactor.runtime import Budgets, Executer, Host, Root, Scheduler
 from planner_reactor.trace import Trace
 
-EQUATION_3 = f"REACTOR = ADD<m> :: (E[m] # {REACTION}[m])"
+EQUATION_3 = parse_program(f"REACTOR = ADD<m> :: (E[m] # {REACTION}[m])", file="<reactor>")
 
 TOLD_CAUSES = frozenset({"failed", "error", "budget", "assumption"})
 """Causes of failed instances that the planner hears of; the others follow from what it knows already."""
@@ -84,7 +84,7 @@ class Reactor:
         )
         self.situations = built_in.situations
         self.executer = Executer(
-            parse_program(EQUATION_3, file="<reactor>"),
+            EQUATION_3,
             scheduler=scheduler,
             host=host,
             controls=built_in.controls,
@@ -149,6 +149,7 @@ class Reactor:
             used_labels=range(self._highest_label + 1),
             signatures=self._signatures,
             functions=self.host.functions,
+            equation=EQUATION_3,
         )
 
     def _root_ended(self, root: Root) -> None:
