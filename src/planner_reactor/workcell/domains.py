@@ -7,11 +7,20 @@ kinds stand in the kit's placing order.
 from __future__ import annotations
 
 import re
+from importlib.resources import files
 
 from planner_reactor.errors import InputError
 from planner_reactor.workcell.kit import KitSpec
 
+SHIPPED = "kitting.itl"
+"""The domain for the cell of this package."""
+
 _RULE = re.compile(r"atp_rule[^;]*=>\s*Contents\(\w+\)\s*@\s*\w+\s*;")
+
+
+def shipped_domain() -> str:
+    """The text of the domain for the cell of this package."""
+    return (files("planner_reactor.workcell") / SHIPPED).read_text(encoding="utf-8")
 
 
 def contents_rule(kit: KitSpec) -> str:

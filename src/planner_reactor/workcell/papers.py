@@ -1,5 +1,5 @@
-"""The papers' own run as data: what struck when, and the 1994 planner's durations (`papers_1994.toml`; R
-§9.2).
+"""The papers' own run as data: what struck when, the 1994 planner's durations, and the pace of the arm
+(`papers_1994.toml`; R §9.2).
 
 The durations are those that the text and the figures give; where they contradict each other (`first ideal
 reactor`: 40 s, 42 s or 46 s) the first is taken. Nothing here knows how a planner is charged for its time.
@@ -11,6 +11,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from importlib.resources import files
 
+from planner_reactor.workcell.calibration import PINNED, Calibration, slowed
 from planner_reactor.workcell.faults import Fault, Strikable, faults_from
 from planner_reactor.workcell.reading import parse_toml
 
@@ -39,7 +40,12 @@ def planner_durations() -> PlannerDurations:
 
 def papers_faults(world: Strikable) -> tuple[Fault, ...]:
     """What struck in the papers' run."""
-    return faults_from(_text(), world, file=FILE, beside=("planner",))
+    return faults_from(_text(), world, file=FILE, beside=("planner", "cell"))
+
+
+def papers_calibration() -> Calibration:
+    """Our cell with an arm as slow as the papers' must have been."""
+    return slowed(PINNED, float(parse_toml(_text(), file=FILE).values["cell"]["arm_slower"]))
 
 
 def _text() -> str:
