@@ -1,1 +1,42 @@
-"""planner-reactor: robot programs that start acting at once and keep improving while they run."""
+"""planner-reactor: robot programs that start acting at once and keep improving while they run.
+
+Everything that the command does is also a call of the same name here: `run`, `check`, `loop`, `kit`, `plan`,
+`network`, `experiment`, `bench` (see `planner_reactor.calls`). They are imported only when they are asked for.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from planner_reactor.calls.checking import check
+    from planner_reactor.calls.looping import kit, loop
+    from planner_reactor.calls.measuring import bench, experiment
+    from planner_reactor.calls.networks import network
+    from planner_reactor.calls.planning import plan
+    from planner_reactor.calls.running import run
+
+__all__ = ["bench", "check", "experiment", "kit", "loop", "network", "plan", "run"]
+
+_MODULES = {
+    "bench": "measuring",
+    "check": "checking",
+    "experiment": "measuring",
+    "kit": "looping",
+    "loop": "looping",
+    "network": "networks",
+    "plan": "planning",
+    "run": "running",
+}
+
+
+def __getattr__(name: str) -> Any:
+    """The call of this name."""
+    if name not in _MODULES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(import_module(f"planner_reactor.calls.{_MODULES[name]}"), name)
+
+
+def __dir__() -> list[str]:
+    return [*globals(), *__all__]

@@ -1,0 +1,176 @@
+"""`run`: one process of a program, on its own or with a host, until it ends (R §4, §9.1).
+
+The program may use the situation processes too: it has a store of situations of its own, as a reactor has, but
+nobody adapts it. What is out of the ordinary (an error in a host's code, a budget, a report, a stub) is told line by
+line to whoever listens.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from math import inf
+from pathlib import Path
+from typing import Any
+
+from planner_reactor.calls.hosts import HostSource, find_host
+from planner_reactor.calls.inputs import one_of, read_text, seconds, whole
+from planner_reactor.errors import RSError, SourceError
+from planner_reactor.reactor.built_ins import BuiltIns
+from planner_reactor.rs.checks import check
+from planner_reactor.rs.expressions import EvaluationError, evaluate
+from planner_reactor.rs.parser import parse_process, read_program
+from planner_reactor.rs.printer import show
+from planner_reactor.rs.source import Source
+from planner_reactor.rs.terms import Call, Expression, Program, Schema, Value
+from planner_reactor.runtime import Clock, Executer, Host, Root, Scheduler, VirtualClock, WallClock
+from planner_reactor.trace import Event, Trace
+
+ROOT = "<process>"
+"""The file that the process to be run is said to stand in."""
+
+
+def run(
+    file: str | Path,
+    process: str,
+    *,
+    host: HostSource | None = None,
+    seed: int = 0,
+    until: float | None = None,
+    clock: str = "virtual",
+    told: Callable[[str], object] = lambda line: None,
+) -> dict[str, Any]:
+    """Run `process`, a call such as `Main` or `Main[3, cap]`, beside the definitions of a file `*.rsl`.
+
+    `host` brings basic processes, functions, a world; `until` is in seconds; `clock` is "virtual" or "wall". Returns
+    `outcome` (stop, abort, running: at `until`, or because all waits), `cause` of an abort, `results`, `time_s`,
+    `events` (steps), `rendezvous`, `processes_live`, `zeno` (the definition that used up a budget, or None) and
+    `waiting` (ports at which something waits). Raises SourceError for a wrong text, InputError for a wrong argument.
+    """
+    seed, until = whole("seed", seed, 0), seconds("until", until)
+    one_of("clock", clock, ("virtual", "wall"))
+    text, maker = read_text(file), find_host(host) if host is not None else None
+    call = _called(process)
+    time: Clock = VirtualClock() if clock == "virtual" else WallClock() if maker else _LonelyClock()
+    scheduler = Scheduler(time, seed=seed)
+    trace = Trace(lambda: scheduler.now, keep=False)
+
+    def tell(event: Event) -> None:
+        told(_line(event))
+
+    trace.sinks.append(tell)
+    used = maker(scheduler, trace=trace) if maker else Host("none")
+    program = _checked(text, str(file), process, call, used)
+    executer, start = _executer(program, used, scheduler, trace)
+    arguments = [_value(argument, process, call, used) for argument in call.arguments]
+    if isinstance(time, _LonelyClock):
+        time.stop = scheduler.stop
+    root = start(call, arguments)
+    executer.run(until)
+    return _came_to(root, call, executer)
+
+
+class _LonelyClock(WallClock):
+    """The wall clock of a program without a host: when nothing is due any more, nothing ever will be."""
+
+    __slots__ = ("stop",)
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.stop: Callable[[], object] = self.interrupt
+
+    def reach(self, when: float) -> None:
+        if when == inf:
+            self.stop()
+        else:
+            super().reach(when)
+
+
+def _called(process: str) -> Call:
+    """The process as a call; RSError if it is anything else."""
+    term = parse_process(process, file=ROOT)
+    if isinstance(term, Call):
+        return term
+    source = Source(process, ROOT)
+    raise RSError([source.finding(0, "error", "no-call", "this is a composition", "expected NAME[arguments]")])
+
+
+def _checked(text: str, file: str, process: str, call: Call, host: Host) -> Program:
+    """The program, if it and the call hold against the static checks as a whole."""
+    program, found = read_program(text, file=file)
+    errors = [f for f in found if f.severity == "error"]
+    if not errors:
+        root = Schema(ROOT, (), (), call, call.place)
+        static = check(program.with_schemas([root]), signatures=host.signatures, functions=host.functions, roots=[ROOT])
+        errors = [f for f in static if f.severity == "error"]
+        errors = list(Source(process, ROOT).shown(Source(text, file).shown(errors)))
+    if errors:
+        raise RSError(sorted(errors, key=lambda f: f.place.file != ROOT))
+    return program
+
+
+def _value(argument: Expression, process: str, call: Call, host: Host) -> Value:
+    try:
+        return evaluate(argument, {}, host.functions)
+    except EvaluationError as error:
+        place = getattr(argument, "place", None) or call.place
+        source = Source(process, ROOT)
+        offset = place.column - 1 if place is not None else 0
+        finding = source.finding(offset, "error", "no-value", f"{show(argument)} has no value: {error}")
+        raise SourceError([finding]) from error
+
+
+def _executer(
+    program: Program, host: Host, scheduler: Scheduler, trace: Trace
+) -> tuple[Executer, Callable[[Call, list[Value]], Root]]:
+    def assumed(assumption: str, holds: bool, evidence: str = "") -> None:
+        trace.record("assumption", name=assumption, holds=holds, evidence=evidence)
+
+    built_in = BuiltIns(
+        scheduler,
+        host.assumptions,
+        assumed=assumed,
+        reached=lambda situation, instance: trace.record("stub", situation=situation, instance=instance),
+        told=lambda name, values: trace.record("report", name=name, values=values),
+    )
+    host.listen(assumed)
+    executer = Executer(
+        program, scheduler=scheduler, host=host, controls=built_in.controls, trace=trace,
+        on_end=built_in.situations.root_ended,
+    )  # fmt: skip
+    built_in.attach(executer)
+
+    def start(call: Call, arguments: list[Value]) -> Root:
+        if host.world is not None:
+            host.world.start(scheduler)
+        return executer.start(call.name, arguments)
+
+    return executer, start
+
+
+def _came_to(root: Root, call: Call, executer: Executer) -> dict[str, Any]:
+    statistics = executer.statistics()
+    results: Mapping[str, Value] = root.results
+    if call.results:
+        results = dict(zip(call.results, root.results.values(), strict=False))
+    return {
+        "outcome": root.outcome or "running",
+        "cause": root.cause,
+        "results": dict(results),
+        "time_s": statistics.time,
+        "events": statistics.steps,
+        "rendezvous": statistics.rendezvous,
+        "processes_live": statistics.processes_live,
+        "zeno": statistics.zeno,
+        "waiting": {str(port): side for port, side in executer.ports().items()},
+    }
+
+
+def _line(event: Event) -> str:
+    match event.kind, event.data:
+        case "report", {"name": name, "values": values}:
+            said = " ".join(map(str, (name, *values)))
+        case "assumption", {"name": name, "holds": holds, "evidence": evidence}:
+            said = f"{name} {'holds' if holds else 'fails'}" + (f" ({evidence})" if evidence else "")
+        case _, data:
+            said = ", ".join(f"{key} {value}" for key, value in data.items())
+    return f"{event.time:.3f} s: {event.kind}: {said}"

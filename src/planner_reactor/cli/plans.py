@@ -1,0 +1,79 @@
+"""`plan` and `network`: what the planner and its logic come to, without a reactor."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from planner_reactor.cli import options
+from planner_reactor.cli.application import command
+from planner_reactor.cli.printing import console, print_json, reserved_output, say
+
+
+@command("kitting.itl", "kitting.itl --without AQ,AM --steps 2 --json")
+def plan(
+    file: Annotated[Path, typer.Argument(metavar="FILE.itl", help="The planning domain.", show_default=False)],
+    without: Annotated[str, typer.Option("--without", metavar="AQ,...", help="Assumptions to do without.")] = "",
+    steps: Annotated[
+        int | None, typer.Option("--steps", metavar="K", help="Stop after so many segments [default: all].")
+    ] = None,
+    goal: options.Goal = None,
+    as_json: options.Json = False,
+) -> int:
+    """Show the segments of a reactor as the planner would send them."""
+    from planner_reactor.calls import planning
+
+    with reserved_output():
+        result = planning.plan(file, without=without, steps=steps, goal=goal)
+    for warning in result["warnings"]:
+        say(f"warning: {warning}")
+    for situation, why in result["impossible"].items():
+        say(f"no plan for {situation}: {why}")
+    if as_json:
+        print_json(result)
+    else:
+        _show_plan(result)
+    return int(bool(result["impossible"]))
+
+
+def _show_plan(result: dict[str, Any]) -> None:
+    out = console()
+    for number, segment in enumerate(result["segments"], start=1):
+        out.print(f"// {number}. {segment['purpose']} ({segment['issued_s'] * 1000:.1f} ms)")
+        for name in ("assumptions", "stubs", "perceptions", "kills"):
+            if segment[name]:
+                out.print(f"// {name}: {', '.join(map(str, segment[name]))}")
+        out.print(segment["text"])
+    out.print(f"// {len(result['segments'])} segments, {'complete' if result['ideal'] else 'not complete'}")
+
+
+@command("times.txt", "times.txt --json")
+def network(
+    file: Annotated[Path, typer.Argument(metavar="FILE", help="Lines such as `i1 (b m o) i2`.", show_default=False)],
+    as_json: options.Json = False,
+) -> int:
+    """Is a network of intervals consistent, what follows from it, and how could it be?"""
+    from planner_reactor.calls import networks
+
+    with reserved_output():
+        result = networks.network(file)
+    if as_json:
+        print_json(result)
+    else:
+        _show_network(result)
+    return int(not result["consistent"])
+
+
+def _show_network(result: dict[str, Any]) -> None:
+    out = console()
+    out.print("consistent" if result["consistent"] else "not consistent: no intervals lie to each other like this")
+    if not result["consistent"]:
+        return
+    out.print("closure:")
+    for edge in result["closure"]:
+        out.print(f"  {edge['first']} ({' '.join(edge['relations'])}) {edge['second']}")
+    out.print("scenario:")
+    for edge in result["scenario"]:
+        out.print(f"  {edge['first']} ({edge['relation']}) {edge['second']}")
