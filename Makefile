@@ -1,0 +1,54 @@
+# `make` lists the targets. A machine needs python3 (3.11 or later), pip and make; everything else is installed here.
+
+PYTHON ?= python3
+VENV   := .venv
+BIN    := $(VENV)/bin
+PIP    := $(BIN)/python -m pip --disable-pip-version-check install --quiet --constraint constraints.txt
+
+.DEFAULT_GOAL := help
+.PHONY: help demo test check figures bench docs conformance clean
+
+help:  ## list the targets
+	@grep -hE '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## */  make \1\t/' | expand -t 22
+
+demo: $(VENV)/demo.done  ## a robot kits while its program is being rewritten; figures and a table in out/demo
+	$(BIN)/planner-reactor experiment papers --out out/demo
+
+test: $(VENV)/dev.done  ## every test (a few minutes)
+	$(BIN)/python -m pytest -n 2
+
+check: $(VENV)/dev.done  ## lint, types, direction of imports
+	$(BIN)/ruff check src tests examples benchmarks
+	$(BIN)/python -m mypy
+	$(BIN)/lint-imports --no-logo
+
+figures: $(VENV)/demo.done  ## the papers' figures, as PNG and SVG, in out/figures
+	$(BIN)/planner-reactor experiment papers --out out/figures
+
+bench: $(VENV)/bench.done  ## our figures beside those of our peers, in one run
+	$(BIN)/planner-reactor bench --peers
+
+docs: $(VENV)/dev.done  ## the pages of docs/ that are made from code
+	$(BIN)/python -m pytest -q tests/test_docs.py tests/test_examples.py
+
+conformance: $(VENV)/dev.done  ## a long run of random programs, executer against semantics
+	CONFORMANCE_PROGRAMS=20000 $(BIN)/python -m pytest -n 2 --timeout 600 tests/test_conformance.py
+
+clean:  ## forget what was made
+	rm -rf out $(VENV) .pytest_cache .mypy_cache .ruff_cache .hypothesis .import_linter_cache
+
+$(VENV)/made:
+	$(PYTHON) -m venv $(VENV)
+	@touch $@
+
+$(VENV)/demo.done: $(VENV)/made pyproject.toml constraints.txt
+	$(PIP) -e '.[figures]'
+	@touch $@
+
+$(VENV)/dev.done: $(VENV)/made pyproject.toml constraints.txt
+	$(PIP) -e '.[dev]'
+	@touch $@
+
+$(VENV)/bench.done: $(VENV)/made pyproject.toml constraints.txt
+	$(PIP) -e '.[bench]'
+	@touch $@
