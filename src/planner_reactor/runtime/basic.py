@@ -233,7 +233,8 @@ class Run:
         if strand.state == WAITING:
             leaf: Use = strand.pc  # type: ignore[assignment]  # basic processes are leaves of this kind
             strand.link = None
-            self._basic._kernel.resume(strand, leaf.finish(strand, self._arguments, outcome))
+            onward = leaf.finish(strand, self._arguments, outcome)
+            self._basic._kernel.resume(strand, onward, counted=True)
 
     def close(self) -> None:
         """Wait for nothing any more."""

@@ -76,6 +76,7 @@ class Compiler:
         exits = Exits(instructions.Return(results, ok=True), instructions.Return(results, ok=False))
         body = _Body(self, _title(schema), tail=None if exporting else exits)
         entry = body.process(schema.body, region, exits, body.outside)
+        body.straighten()
         return Code(entry, blank(region.size - len(schema.head)))
 
     def root(self, name: str, process: Process, bound: Mapping[str, Value]) -> tuple[Instruction, Frame]:
@@ -91,6 +92,7 @@ class Compiler:
         )
         body = _Body(self, name, tail=None)
         entry = body.process(process, region, exits, body.outside)
+        body.straighten()
         return entry, [*bound.values(), *blank(region.size - len(bound))]
 
 
@@ -104,7 +106,7 @@ class _Body:
         self.sensing = Where(name, SENSING)
         self.serving = Where(name, SERVING)
         self.tail = tail
-        self.calls = 0
+        self.leaves: list[Instruction] = []
 
     def process(self, term: Process, region: Region, exits: Exits, where: Where) -> Instruction:
         match term:
@@ -265,8 +267,7 @@ class _Body:
             return exits.ok
         if call.name == "ABORT":
             return instructions.Fail(exits.ab)
-        self.calls += 1
-        at = Where(where.within, where.zone, call.place or (where.within, self.calls))
+        at = Where(where.within, where.zone, call.place or (where.within, len(self.leaves)))
         failed = Mistake(self.kernel, call.name, exits.ab, at)
         control = self.compiler.controls.get(call.name)
         if control is None and call.name not in LEAVES:
@@ -288,8 +289,18 @@ class _Body:
             failed=failed,
         )
         if control is None:
-            return LEAVES[call.name](setting, self.compiler.ports)
-        return Use(setting, control)
+            leaf = LEAVES[call.name](setting, self.compiler.ports)
+        else:
+            leaf = Use(setting, control)
+        self.leaves.append(leaf)
+        return leaf
+
+    def straighten(self) -> None:
+        """Let leaves go on past rounds that have nothing to forget."""
+        for leaf in self.leaves:
+            onward = getattr(leaf, "ok", None)
+            while isinstance(onward, instructions.Round) and not onward.slots and onward.head is not onward:
+                onward = leaf.ok = onward.head  # type: ignore[attr-defined]  # it has one
 
     def schema_call(self, call: Call, region: Region, exits: Exits, failed: Mistake) -> Instruction:
         definition = self.compiler.definitions.named(call.name)

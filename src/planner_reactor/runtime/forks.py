@@ -63,6 +63,7 @@ class ForkParts:
             parts.append(part)
             silent.append(part)
         fork.live = count
+        kernel.due = True
         if self.guard is not None:
             self._set_guard(strand, fork)
         return None
@@ -143,7 +144,7 @@ class RivalEnd:
         fork.ended.append((strand.index, self.ok, strand.cause))
         kernel.live -= 1
         strand.release()
-        kernel.verdicts.add(fork)
+        kernel.undecided(fork)
         return None
 
 
@@ -171,6 +172,7 @@ class ForkSpawn:
         fork.parts.append(head)
         fork.live = 1
         kernel.silent.append(head)
+        kernel.due = True
         return None
 
 
@@ -213,6 +215,7 @@ class SpawnBody:
         body = head.child(self.body, head.frame.copy(), fork, fork.spawned)
         fork.bodies[body.index] = body
         kernel.silent.append(body)
+        kernel.due = True
         if self.opener is not None:
             enter(kernel, body, self.opener, head.value, self.slot, self.close)
 

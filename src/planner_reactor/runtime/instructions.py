@@ -207,7 +207,7 @@ class CloseBody:
         leave(strand, body)
         kernel = self.kernel
         close(kernel, body, "stop" if self.ok else "abort")
-        if kernel.silent:
+        if kernel.due:
             kernel.queue(strand, self.onward)
             return None
         return self.onward

@@ -56,7 +56,7 @@ class Kernel:
         self._slice = range(budgets.slice)
         self._patience = range(budgets.turns)
         self.verdicts = Verdicts()
-        self._undecided = self.verdicts.new
+        self.due = False  # is anything silent, undecided or put off to the end of the step?
         self.watched: dict[Value, Callable[[], object]] = {}
         self._moved: dict[Value, None] = {}
         self._later: deque[Callable[[], object]] = deque()
@@ -66,8 +66,7 @@ class Kernel:
     # -- the loop
 
     def turn(self, strand: Strand, pc: Instruction) -> None:
-        """Let a strand run for a slice, or until it waits, forks, ends, or something else comes first."""
-        strand.state = RUNNING
+        """Let a ready strand run, if its body or root has not used up its turns at this instant."""
         meter, now = strand.meter, self.scheduler.now
         if meter.instant != now:
             meter.instant = now
@@ -75,13 +74,18 @@ class Kernel:
         meter.turns += 1
         if meter.turns > self.turns:
             self.overrun(strand, pc)
-            return
+        else:
+            self.run(strand, pc)
+
+    def run(self, strand: Strand, pc: Instruction) -> None:
+        """Let a strand run for a slice, or until it waits, forks, ends, or something else comes first."""
+        strand.state = RUNNING
         following: Instruction | None = pc
         for _ in self._slice:
             following = following.run(strand)  # type: ignore[union-attr]  # never None here
             if following is None:
                 return
-        meter.turns += self.budgets.slice - 1
+        strand.meter.turns += self.budgets.slice - 1
         self.advance(strand, following)
 
     def _retry(self, strand: Strand) -> None:
@@ -120,6 +124,7 @@ class Kernel:
             elif self._later:
                 self._later.popleft()()
             else:
+                self.due = False
                 return
 
     def drain(self) -> None:
@@ -131,7 +136,7 @@ class Kernel:
         ready = self.ready
         try:
             while True:
-                if self.silent or self._undecided or self._later:
+                if self.due:
                     self.settle()
                 if not ready:
                     return
@@ -151,20 +156,23 @@ class Kernel:
             self._armed = True
             self.scheduler.soon(self.drain)
 
-    def resume(self, strand: Strand, pc: Instruction) -> None:
-        """A waiting leaf has ended by itself (a step, already counted): go on behind it, now.
+    def resume(self, strand: Strand, pc: Instruction, *, counted: bool = False) -> None:
+        """A waiting leaf has ended by itself (a step, already observed): go on behind it.
 
-        For what the scheduler calls; never from within a turn.
+        For what the scheduler calls, never from within a turn. `counted`: it may have taken no time.
         """
         strand.link = None
-        if self.silent:
+        if self.due:
             self.queue(strand, pc)
             self.arm()
             return
-        self.turn(strand, pc)
+        if counted:
+            self.turn(strand, pc)
+        else:
+            self.run(strand, pc)
         if self.watched:
             self.moved(strand)
-        if self.silent or self.ready or self._undecided or self._later:
+        if self.due or self.ready:
             self.drain()
 
     def communicated(self, strand: Strand, pc: Instruction) -> bool:
@@ -173,13 +181,14 @@ class Kernel:
         self.rendezvous += 1
         strand.state = RUNNING
         self.advance(strand, pc)
-        return not (self.silent or self._undecided or self._later)
+        return not self.due
 
     def queue(self, strand: Strand, pc: Instruction) -> None:
         """The strand will be advanced from here within the present step."""
         strand.pc = pc
         strand.state = SILENT
         self.silent.append(strand)
+        self.due = True
 
     def wake(self, strand: Strand) -> None:
         """The strand that waits in a control will have a turn to try again."""
@@ -202,6 +211,11 @@ class Kernel:
             for inner, outer in exits.exports[index]:
                 frame[outer] = frame[inner]
         self.joined(fork, ok, cause)
+
+    def undecided(self, fork: Fork) -> None:
+        """A part of this `#` has ended."""
+        self.verdicts.add(fork)
+        self.due = True
 
     def joined(self, fork: Fork, ok: bool, cause: str) -> None:
         """A fork is over: the strand that met it goes on."""
@@ -237,6 +251,11 @@ class Kernel:
         abort_body(self, strand.body, "budget")
         return None
 
+    def _put_off(self, action: Callable[[], object]) -> None:
+        """Do this when nothing silent is left of the present step."""
+        self._later.append(action)
+        self.due = True
+
     # -- what waits for something to come to rest
 
     def watch(self, label: Value, told: Callable[[], object]) -> None:
@@ -250,7 +269,7 @@ class Kernel:
         """The strand has had a turn: what is below its guard may have come to rest."""
         if strand.guard in self.watched:
             if not self._moved:
-                self._later.append(self._tell_watchers)
+                self._put_off(self._tell_watchers)
             self._moved[strand.guard] = None
 
     def _tell_watchers(self) -> None:
@@ -263,7 +282,7 @@ class Kernel:
 
     def kill_root(self, root: Root) -> None:
         """Abort a root from outside, at the end of the present step."""
-        self._later.append(lambda: self._kill_root(root))
+        self._put_off(lambda: self._kill_root(root))
         self.arm()
 
     def _kill_root(self, root: Root) -> None:

@@ -158,13 +158,14 @@ class Pass:
                 return self._ended(strand, ok=False)
         if self._adapt is not None:
             age = self._adapt(age, self.kernel)
-        if age <= 0:
-            return self._ended(strand, ok=True)
         scheduler = self._scheduler
+        when = scheduler.now + age
+        if when <= scheduler.now:
+            return self._ended(strand, ok=True)
         strand.pc = self
         strand.state = WAITING
         strand.link = entry = (self, strand)
-        scheduler.wait(scheduler.now + age, entry)
+        scheduler.wait(when, entry)
         return None
 
     def elapsed(self, entry: Entry) -> None:
@@ -272,7 +273,7 @@ class Use:
             return None
         strand.state = RUNNING
         onward = self.finish(strand, values, outcome)
-        if kernel.silent:
+        if kernel.due:
             kernel.queue(strand, onward)
             return None
         return onward
