@@ -128,6 +128,7 @@ class Belt:
         self._scheduler = scheduler
         self._numbers = numbers
         self._lane = 0
+        self._riding: dict[int, Part] = {}
         self._leaving: dict[int, Timer] = {}
         self._arrived = arrived
         self._left = left
@@ -164,19 +165,19 @@ class Belt:
         self._lane = lane
         part.u = u
         part.y = lanes[lane] + self._calibration.lane_noise * self.feeders[part.kind].across()
-        self.parts[part.kind][part.number] = part
+        self.parts[part.kind][part.number] = self._riding[part.number] = part
         self._time_leaving(part)
 
     def remove(self, part: Part) -> None:
         """Take a part off the belt."""
-        del self.parts[part.kind][part.number]
+        del self.parts[part.kind][part.number], self._riding[part.number]
         self._leaving.pop(part.number).cancel()
 
     def shift(self, part: Part, along: float, across: float) -> None:
         """A part slides along the belt (m): the other way if it would slide over an end, and further if on
         another.
         """
-        del self.parts[part.kind][part.number]
+        del self._riding[part.number]
         travelled = self.position(part) + along
         if not 0.0 <= travelled < self.length - 0.03:
             travelled = min(max(travelled - 2 * along, 0.0), self.length - 0.03)
@@ -184,7 +185,7 @@ class Belt:
         part.y += across
         while not self._is_clear(part.u, part.y):
             part.y += CLEAR if across >= 0 else -CLEAR
-        self.parts[part.kind][part.number] = part
+        self._riding[part.number] = part
         self._leaving.pop(part.number).cancel()
         self._time_leaving(part)
 
@@ -192,19 +193,13 @@ class Belt:
         """The part that lies at this place of the belt's frame, the nearest if several do."""
         best: Part | None = None
         least = tolerance
-        for parts in self.parts.values():
-            for part in parts.values():
-                away = max(abs(part.u - u), abs(part.y - y))
-                if away <= least:
-                    best, least = part, away
+        for part in self._riding.values():
+            if -least <= part.u - u <= least and (away := max(abs(part.u - u), abs(part.y - y))) <= least:
+                best, least = part, away
         return best
 
     def _is_clear(self, u: float, y: float) -> bool:
-        for parts in self.parts.values():
-            for part in parts.values():
-                if abs(part.u - u) < CLEAR and abs(part.y - y) < CLEAR / 2:
-                    return False
-        return True
+        return not any(-CLEAR < part.u - u < CLEAR and abs(part.y - y) < CLEAR / 2 for part in self._riding.values())
 
     def _time_leaving(self, part: Part) -> None:
         when = (self.length - part.u) / self.speed

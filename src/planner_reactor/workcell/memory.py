@@ -66,6 +66,10 @@ class TrayRecord:
         """Should something be in the slot, by all that was done and seen?"""
         return slot in self.contents or slot in self.came_filled or slot in self.glimpsed
 
+    def as_expected(self) -> bool:
+        """Is nothing but the known contents expected in it, and nothing of them known to be gone?"""
+        return not self.gone and self.came_filled <= self.contents.keys() and self.glimpsed <= self.contents.keys()
+
     def fill(self, slot: str, handle: str) -> None:
         """This part is in the slot."""
         self.contents[slot] = handle

@@ -54,6 +54,11 @@ class TrayWatch:
             evidence.supports("ADT")
         else:
             evidence.against("ADT", f"{tray.handle} is not where it was put")
+        if tray.contents.keys() == set(filled) and tray.as_expected():
+            evidence.supports("ACP")
+            if filled:
+                evidence.supports("ACT")
+            return
         missing = [slot for slot in self._kinds if tray.expects(slot) and slot not in filled]
         strange = [slot for slot in filled if slot in tray.gone or not tray.done(slot)]
         tray.gone.difference_update(strange)
