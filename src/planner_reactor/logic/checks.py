@@ -64,7 +64,7 @@ class Survey:
         self.odd.append(self.source.diagnostic(name.offset, code, message, severity="warning"))
 
 
-def findings(survey: Survey, domain: Domain, *, whole: bool) -> Iterator[Diagnostic]:
+def findings(survey: Survey, domain: Domain, *, whole: bool, warnings: bool) -> Iterator[Diagnostic]:
     """Every finding; what only a whole domain can be blamed for (`whole`) is left out if sentences
     were skipped.
     """
@@ -73,6 +73,7 @@ def findings(survey: Survey, domain: Domain, *, whole: bool) -> Iterator[Diagnos
     yield from _arities(survey, domain)
     if whole:
         yield from _never_produced(survey, domain)
+    if whole and warnings:
         yield from _never_used(survey, domain)
         yield from _suspicious(survey)
 

@@ -57,7 +57,7 @@ def read_domain(source: str | Path, *, file: str | None = None) -> Domain:
 
     DomainError with all that is wrong; OSError if the file cannot be read.
     """
-    domain, found = _read(*_text_of(source, file))
+    domain, found = _read(*_text_of(source, file), warnings=False)
     errors = [finding for finding in found if finding.severity == "error"]
     if errors:
         raise DomainError(errors)
@@ -78,14 +78,14 @@ def _text_of(source: str | Path, file: str | None) -> tuple[str, str]:
     return source, file or "<text>"
 
 
-def _read(text: str, file: str) -> tuple[Domain, tuple[Diagnostic, ...]]:
+def _read(text: str, file: str, *, warnings: bool = True) -> tuple[Domain, tuple[Diagnostic, ...]]:
     source = Source(text, file)
     sentences, wrong = parse(source)
     builder = _Builder(source, wrong, sentences)
     for sentence in sorted(sentences, key=lambda s: isinstance(s, PersistenceNode)):
         builder.add(sentence)  # persistence last: which of its names are constants shows elsewhere
     domain = builder.domain()
-    wrong.extend(findings(builder.survey, domain, whole=not wrong))
+    wrong.extend(findings(builder.survey, domain, whole=not wrong, warnings=warnings))
     return domain, tuple(sorted(wrong, key=lambda found: (found.place.line, found.place.column)))
 
 

@@ -8,7 +8,7 @@ held back.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
 from planner_reactor.link.messages import Adaptation, Change, Mode
@@ -72,13 +72,14 @@ class Issuer:
     monitors: dict[Monitor, int] = field(default_factory=dict)
     requests: dict[Atom, int] = field(default_factory=dict)
     under_way: dict[int, UnderWay] = field(default_factory=dict)
+    introduced: list[Segment] = field(default_factory=list)  # by the last issue, and still stubs
+    _strays: list[int] = field(default_factory=list)  # monitors that were to be removed, and are still there
 
     # ------------------------------------------------------------------------------------- what may go out
 
-    def is_held(self, situations: Iterable[Situation]) -> bool:
-        """Does an adaptation under way touch any of these?"""
-        touched = [flight.touched for flight in self.under_way.values()]
-        return any(situation in some for situation in situations for some in touched)
+    def holder(self, situations: frozenset[Situation]) -> int | None:
+        """The adaptation under way that touches any of these, if one does."""
+        return next((n for n, flight in self.under_way.items() if not flight.touched.isdisjoint(situations)), None)
 
     def touched_by(self, draft: Draft) -> frozenset[Situation]:
         """All situations that the draft would change, remove, or newly refer to."""
@@ -90,7 +91,7 @@ class Issuer:
         callers = {caller for orphan in gone for caller in self.model.callers(orphan.situation)}
         return frozenset({segment.situation, *draft.refinements, *fresh, *callers, *(o.situation for o in gone)})
 
-    def issue(self, draft: Draft, beliefs: Beliefs, holding: frozenset[str]) -> Adaptation | None:
+    def issue(self, draft: Draft, beliefs: Beliefs, holding: Mapping[str, int]) -> Adaptation | None:
         """Record the draft in the model and write the adaptation; None if nothing in the reactor has to change."""
         segment, model = draft.segment, self.model
         refinement = draft.refinements[segment.situation]
@@ -114,6 +115,7 @@ class Issuer:
             parts.changes.append(
                 Change(situation=segment.name, base=segment.version, assumptions=assumptions, fresh=first)
             )
+        self.introduced = []
         for situation, path in new.items():
             self._introduce(parts, situation, path, draft)
         for orphan in gone:
@@ -122,10 +124,12 @@ class Issuer:
             parts.removed.append(orphan.name)
             model.remove(orphan)
         monitors = dict(self.monitors)
-        self._watch(parts, beliefs, holding - set(model.used()))
+        self._watch(parts, beliefs, {a: n for a, n in holding.items() if not model.uses[a]})
         return self._send(parts, draft, touched, before, monitors, used)
 
-    def reconcile(self, beliefs: Beliefs, holding: frozenset[str], asked: dict[Atom, Action]) -> Adaptation | None:
+    def reconcile(
+        self, beliefs: Beliefs, holding: Mapping[str, int], asked: Mapping[Atom, Action]
+    ) -> Adaptation | None:
         """An adaptation for monitors and perception requests alone, if any are missing or left over."""
         parts, monitors, used = _Parts(), dict(self.monitors), set(self.model.used())
         self._watch(parts, beliefs, holding)
@@ -171,6 +175,7 @@ class Issuer:
         self.model.put(segment, refinement)
         if refinement is None:
             process = reactions.stub(situation, self.model.names, self.stub_ms)
+            self.introduced.append(segment)
         else:
             process = reactions.reaction(refinement, self.model.names, fold=self.fold)
         self._replace(parts, segment, process)
@@ -179,17 +184,20 @@ class Issuer:
             Change(situation=segment.name, base=segment.version, assumptions=assumptions, fresh=True)
         )
 
-    def _watch(self, parts: _Parts, beliefs: Beliefs, holding: Iterable[str]) -> None:
+    def _watch(self, parts: _Parts, beliefs: Beliefs, holding: Mapping[str, int]) -> None:
         """Bring the monitors into line with the assumptions in use."""
         wanted: dict[Monitor, int] = {}
         for name in sorted(self.model.used(), key=lambda n: (beliefs.assumption(n).likelihood, n)):
             declared = beliefs.assumption(name)
             if declared.monitor == "flag":
                 wanted["ASSUMONITOR", name] = self.period_ms or declared.period_ms
-        for name in sorted(holding):
-            wanted["HOLDMONITOR", name] = self.period_ms or beliefs.assumption(name).period_ms
-        for monitor in [m for m in self.monitors if m not in wanted]:
+        for name, patience in sorted(holding.items()):
+            wanted["HOLDMONITOR", name] = patience * (self.period_ms or beliefs.assumption(name).period_ms)
+        coming = {label for flight in self.under_way.values() for label in flight.adaptation.adds}
+        for monitor in [m for m, label in self.monitors.items() if m not in wanted and label not in coming]:
             parts.kills.append(self.monitors.pop(monitor))
+        parts.kills.extend(self._strays)
+        self._strays.clear()
         for (kind, name), period in wanted.items():
             if (kind, name) not in self.monitors:
                 self.monitors[kind, name] = self._add(parts, reactions.monitor(kind, name, period))
@@ -257,9 +265,13 @@ class Issuer:
         for monitor, label in list(self.monitors.items()):
             if label in mine:
                 del self.monitors[monitor]
-        for monitor, label in flight.monitors.items():
-            if label in flight.adaptation.kills:
-                self.monitors.setdefault(monitor, label)
+        old = {label: monitor for monitor, label in flight.monitors.items()}
+        segments = {segment.label for _, segment in flight.before if segment is not None}
+        for label in flight.adaptation.kills:
+            if label in old and old[label] not in self.monitors:
+                self.monitors[old[label]] = label
+            elif label not in segments:
+                self._strays.append(label)
         for atom, label in list(self.requests.items()):
             if label in mine:
                 del self.requests[atom]

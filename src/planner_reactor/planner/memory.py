@@ -36,7 +36,7 @@ class Memory:
         same = tuple(situation.arguments.index(a) for a in situation.arguments)
         key = (situation.schema, kinds, same, context, beliefs.told)
         for known in self._known.get(key, ()):
-            if not (known.required | known.presumed) & beliefs.relaxed and known.missing <= beliefs.relaxed:
+            if known.serves(beliefs.relaxed):
                 return self._moved(known, situation)
         self.worked_out += 1
         found = work_out()

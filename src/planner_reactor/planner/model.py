@@ -35,7 +35,7 @@ class Segment:
     version: int = 0
     pending: int | None = None
     stale: bool = False
-    urgency: int = 0
+    urgency: int = 3  # see agenda
     impossible: str = ""
     refusals: int = 0
 
@@ -80,9 +80,6 @@ class Model:
     def named(self, name: str) -> Segment | None:
         """The segment of the situation with this name."""
         return next((s for s in self if s.name == name), None)
-
-    def using(self, assumption: str) -> list[Segment]:
-        return [segment for segment in self if assumption in segment.in_use]
 
     def new(self, situation: Situation, context: Context, path: tuple[int, ...] = ()) -> Segment:
         """A segment that is not in the model yet; its version goes on from where a removed one ended."""

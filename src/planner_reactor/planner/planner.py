@@ -22,6 +22,13 @@ from planner_reactor.errors import InputError, nearest
 from planner_reactor.link.messages import Adaptation, Mode, Perception
 from planner_reactor.logic.domain import ActionSchema, Domain
 from planner_reactor.logic.formulas import Atom
+from planner_reactor.planner.agenda import (
+    ACTIVE_STUB,
+    FAILED_ASSUMPTION,
+    FAILED_SITUATION,
+    QUIESCENT,
+    Agenda,
+)
 from planner_reactor.planner.beliefs import Beliefs
 from planner_reactor.planner.issuing import Draft, Issuer, UnderWay
 from planner_reactor.planner.memory import Memory
@@ -33,8 +40,7 @@ from planner_reactor.planner.theory import Theory
 
 Cause: TypeAlias = Literal["normal", "forced"]
 StepKind: TypeAlias = Literal["refine", "relax", "reinstate", "watch"]
-FAILED_SITUATION, FAILED_ASSUMPTION, ACTIVE_STUB, QUIESCENT = range(4)
-MOST_REFUSALS = 3
+MOST_REFUSALS = 5
 """So often in a row the reactor may refuse what is planned for a situation."""
 
 
@@ -97,6 +103,8 @@ class Planner:
         self._causes: dict[str, Cause] = {}
         self._returning: dict[str, None] = {}
         self._failures: Counter[str] = Counter()
+        self._returns: Counter[str] = Counter()
+        self._agenda = Agenda(self.model)
         self._draft: Draft | None = None
         self._memory = Memory(self._theory)
         self._counts: Counter[str] = Counter()
@@ -120,6 +128,12 @@ class Planner:
         if self.model.root not in self.model.segments:
             return (self.goal,) if not self._start.impossible else ()
         return tuple(segment.name for segment in self.model if segment.is_open)
+
+    @property
+    def _nothing_open(self) -> bool:
+        if self.model.root not in self.model.segments:
+            return bool(self._start.impossible)
+        return self._agenda.is_empty()
 
     @property
     def ideal(self) -> bool:
@@ -164,8 +178,7 @@ class Planner:
         """The most urgent situation that is not held back by an adaptation under way."""
         if self.model.root not in self.model.segments:
             return None if self._start.impossible else Draft(self._start, f"goal {self.goal}")
-        ready = [segment for segment in self.model if segment.is_open and segment.pending is None]
-        best = min(ready, key=lambda segment: (segment.urgency, segment.path), default=None)
+        best = self._agenda.next()
         return None if best is None else Draft(best, *self._purpose(best))
 
     def _purpose(self, segment: Segment) -> tuple[str, str]:
@@ -205,13 +218,17 @@ class Planner:
 
     def _finish(self, draft: Draft) -> Step:
         """Issue the adaptation that a draft amounts to, unless something that it touches is held."""
-        if self._issuer.is_held(self._issuer.touched_by(draft)):
-            self._draft = None
-            return self._step("refine", draft)
         segment = draft.segment
+        holder = self._issuer.holder(self._issuer.touched_by(draft))
+        if holder is not None:
+            self._draft = None
+            self._agenda.set_aside(segment, holder)
+            return self._step("refine", draft)
         below = [c.situation for c in segment.children]
         adaptation = self._issuer.issue(draft, self.beliefs, self._held_back())
         segment.stale, segment.urgency = False, QUIESCENT
+        for stub in self._issuer.introduced:
+            self._agenda.push(stub)
         below += [c.situation for c in segment.children]
         self._mark(self.model.renew_contexts(below), QUIESCENT if not draft.assumption else self._urgency(draft))
         self._draft = None
@@ -273,35 +290,34 @@ class Planner:
         self._counts["issued"] += 1
         return Step("watch", adaptations=(adaptation,), purpose=adaptation.purpose)
 
-    def _held_back(self) -> frozenset[str]:
-        """The assumptions that failed and may be reinstated."""
-        return frozenset(
-            name
+    def _held_back(self) -> dict[str, int]:
+        """The assumptions that failed and may be reinstated; each time it takes twice as long to believe it."""
+        return {
+            name: 1 << min(self._returns[name], 6)
             for name, cause in self._causes.items()
             if cause == "forced" and self.beliefs.assumption(name).reinstatable
-        )
+        }
 
     def _reinstate(self) -> Step | None:
         """Take back an assumption that holds again, once nothing else is under way."""
-        if not self._returning or self._issuer.under_way or self.expectation:
+        if not self._returning or self._issuer.under_way or not self._nothing_open:
             return None
         name = next(iter(self._returning))
         del self._returning[name]
         self._causes.pop(name, None)
         self.beliefs = self.beliefs.reinstated(name)
         self._counts["reinstated"] += 1
+        self._returns[name] += 1
         self.relaxations.append(Relaxation(name, "reinstated"))
-        for segment in [self._start, *self.model]:
-            refinement = segment.refinement
-            if segment.impossible or (refinement is not None and name in refinement.missing):
-                segment.impossible = ""
-                self._mark([segment], QUIESCENT)
+        self._start.impossible = ""
+        self._mark([segment for segment in self.model if segment.impossible], QUIESCENT)
+        self._mark_outdated(QUIESCENT)
         self._close_relaxation(None)
         return Step("reinstate", assumption=name, cause="reinstated", purpose=f"reinstate {name}")
 
     def _relax_next(self) -> Step | None:
         """The reactor is ω-ideal: relax the assumption in use that is least likely to hold."""
-        if self.relax == "none" or self.expectation or self.model.root not in self.model.segments:
+        if self.relax == "none" or not self._nothing_open or self.model.root not in self.model.segments:
             return None
         names = [n for n in self.assumptions_in_use if n not in self.beliefs.relaxed and self._may_relax(n)]
         if not names:
@@ -319,15 +335,22 @@ class Planner:
         self.beliefs = self.beliefs.without(name)
         self.relaxations.append(Relaxation(name, cause))
         self._draft = None
-        self._mark(self.model.using(name), urgency)
+        self._mark_outdated(urgency)
         self._close_relaxation(None)
+
+    def _mark_outdated(self, urgency: int) -> None:
+        """Everything has to be planned again that rests on what is relaxed now, or missed what is not."""
+        relaxed = self.beliefs.relaxed
+        outdated = [s for s in self.model if s.refinement and not s.refinement.serves(relaxed)]
+        self._mark(outdated, urgency)
 
     def _mark(self, segments: list[Segment], urgency: int) -> None:
         """These have to be planned again."""
         for segment in segments:
             segment.stale = True
             segment.impossible = ""
-            segment.urgency = min(segment.urgency, urgency) if segment.urgency else segment.urgency
+            segment.urgency = min(segment.urgency, urgency)
+            self._agenda.push(segment)
 
     def _urgency(self, draft: Draft) -> int:
         return FAILED_ASSUMPTION if self._causes.get(draft.assumption) == "forced" else QUIESCENT
@@ -339,7 +362,7 @@ class Planner:
         record = self.relaxations[-1]
         if adaptation is not None:
             record = replace(record, adaptations=(*record.adaptations, adaptation.id))
-        self.relaxations[-1] = replace(record, done=not self.expectation)
+        self.relaxations[-1] = replace(record, done=self._nothing_open)
 
     def _unlikelihood(self, name: str) -> tuple[float, int, str]:
         declared = self.beliefs.assumption(name)
@@ -352,9 +375,12 @@ class Planner:
         self._counts[perception.kind] += 1
         match perception.kind:
             case "adaptation_applied":
-                self._answered(self._issuer.applied(int(perception.subject)), applied=True)
-            case "adaptation_refused" | "adaptation_timed_out":
-                self._answered(self._issuer.not_applied(int(perception.subject)), applied=False, why=perception.cause)
+                self._issuer.applied(int(perception.subject))
+                self._agenda.release(int(perception.subject))
+            case "adaptation_refused":
+                self._not_applied(self._issuer.not_applied(int(perception.subject)), why=perception.cause)
+            case "adaptation_timed_out":
+                self._not_applied(self._issuer.not_applied(int(perception.subject)))
             case "stub_trigger":
                 self._raise(perception.subject, ACTIVE_STUB)
             case "situation_failure":
@@ -368,21 +394,31 @@ class Planner:
             case "guard_kill" | "error":
                 pass  # completion is told by adaptation_applied; errors are counted
 
-    def _answered(self, flight: UnderWay | None, *, applied: bool, why: str = "") -> None:
-        if flight is None or applied or flight.segment is None:
+    def _not_applied(self, flight: UnderWay | None, *, why: str = "") -> None:
+        """Plan again what was in an adaptation that was refused (`why`) or that took too long."""
+        if flight is None or flight.segment is None:
             return
         self._draft = None
+        self._agenda.release(flight.adaptation.id)
+        if flight.segment not in self.model.segments:
+            fresh = self.model.new(flight.segment, self._root_context)
+            self._start = replace(fresh, refusals=self._start.refusals)
         segment = self.model.segments.get(flight.segment, self._start)
-        segment.refusals += 1
-        segment.stale = True
+        self._mark([segment], QUIESCENT)
+        segment.refusals += bool(why)
         if segment.refusals >= MOST_REFUSALS:
-            segment.impossible = f"the reactor did not apply it {segment.refusals} times ({why})"
-        self._mark(self.model.renew_contexts(c.situation for c in segment.children), QUIESCENT)
+            segment.impossible = f"the reactor refused it {segment.refusals} times ({why})"
+        restored = [situation for situation, _ in flight.before]
+        below = [c.situation for s in self.model for c in s.children if s.situation in restored]
+        self._mark(self.model.renew_contexts([*restored, *below]), QUIESCENT)
+        self._mark_outdated(QUIESCENT)
 
     def _raise(self, name: str, urgency: int) -> None:
         segment = self.model.named(name)
         if segment is not None:
-            segment.urgency = min(segment.urgency or QUIESCENT, urgency)
+            segment.urgency = min(segment.urgency, urgency)
+            if segment.is_open:
+                self._agenda.push(segment)
             if self._draft is not None and self._draft.segment is not segment and segment.is_open:
                 self._draft = None
 
@@ -415,11 +451,9 @@ class Planner:
         self.beliefs = self.beliefs.learning(atom, holds=verdict == "holds")
         self._issuer.requests.pop(atom, None)
         self._draft = None
-        for segment in [self._start, *self.model]:
-            if segment.refinement is None or atom in segment.refinement.asked:
-                segment.impossible = ""
-                if segment.refinement is not None:
-                    self._mark([segment], QUIESCENT)
+        self._start.impossible = ""
+        asked = [s for s in self.model if s.impossible or (s.refinement and atom in s.refinement.asked)]
+        self._mark(asked, QUIESCENT)
 
 
 def _why_impossible(refinement: Refinement, name: str) -> str:

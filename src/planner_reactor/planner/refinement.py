@@ -86,6 +86,10 @@ class Refinement:
     warnings: tuple[str, ...] = ()
 
 
+    def serves(self, relaxed: frozenset[str]) -> bool:
+        """Would it be the same with these assumptions relaxed?"""
+        return not (self.required | self.presumed) & relaxed and self.missing <= relaxed
+
     def renamed(self, constants: Mapping[Term, Term]) -> Refinement:
         """The same refinement for constants that the domain does not tell apart."""
         return replace(

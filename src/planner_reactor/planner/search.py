@@ -16,6 +16,7 @@ from planner_reactor.logic.formulas import variables
 from planner_reactor.planner.plan import BEFORE, END, Plan, Result, Unnamed
 from planner_reactor.planner.problem import Consulted, Goal, Problem
 from planner_reactor.planner.reach import NEVER, Reach
+from planner_reactor.planner.repetition import Part, pattern, repeat
 from planner_reactor.planner.supports import Supports, Way
 from planner_reactor.planner.theory import DEEPEST
 from planner_reactor.planner.threats import Threats
@@ -118,10 +119,28 @@ class Search:
             return 0, _chained(added, rest)
         least = sum(self._least(group) for group in groups)
         if len(self.plan.steps) + least <= most:
-            if not all(self._deepen(group) for group in groups):
+            if not self._solve_groups(groups):
                 return NEVER, rest
             least = 0
         return least, _chained(others, rest)
+
+    def _solve_groups(self, groups: list[list[Goal]]) -> bool:
+        """Solve one group after the other; groups that are alike are solved once and repeated."""
+        plan = self.plan
+        solved: dict[object, Part] = {}
+        for group in groups:
+            key = pattern(self.problem.theory, plan, group)
+            mark = plan.mark()
+            if key in solved:
+                if repeat(plan, solved[key], group):
+                    continue
+                plan.undo(mark)
+            goals = tuple(plan.bindings.ground(goal.atom) for goal in group)
+            first, start = len(plan.steps), len(plan.links)
+            if not self._deepen(group):
+                return False
+            solved.setdefault(key, Part(goals, first, len(plan.steps), start, len(plan.links)))
+        return True
 
     def _is_complete(self, steps: int) -> bool:
         """Is everything named that must be, and does every result come before its use?"""

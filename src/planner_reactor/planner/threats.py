@@ -58,12 +58,20 @@ class Threats:
         return False
 
     def _open(self, links: int, steps: int) -> Iterator[tuple[Link, Step]]:
-        for n, link in enumerate(self.plan.links):
-            if link.lost or link.maintained:
+        plan, ends = self.plan, self.problem.theory.ends
+        enders: dict[str, list[Step]] = {}
+        for step in plan.steps:
+            for predicate in ends.get(step.schema.name, ()):
+                enders.setdefault(predicate, []).append(step)
+        persistent = self.problem.theory.domain.persistences
+        for n, link in enumerate(plan.links):
+            predicate = link.atom.predicate
+            if link.lost or link.maintained or not (predicate in enders or predicate in persistent):
                 continue
+            since = steps if n < links else 0
             fragile = self.is_fragile(link)
-            for step in self.plan.steps[steps if n < links else 0 :]:
-                if step.number in (link.producer, link.consumer):
+            for step in plan.steps[since:] if fragile else enders.get(predicate, ()):
+                if step.number in (link.producer, link.consumer) or step.number - plan.first < since:
                     continue
                 if (fragile and not step.schema.senses) or self.ends(step, link.atom):
                     yield link, step
