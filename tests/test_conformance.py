@@ -16,7 +16,7 @@ import pytest
 from planner_reactor.analysis.conformance import Follower
 from planner_reactor.errors import BudgetError
 from planner_reactor.reactor.built_ins import BuiltIns
-from planner_reactor.rs.evolves import World, spawned_situations
+from planner_reactor.rs.configurations import World, spawned_situations
 from planner_reactor.rs.parser import parse_process
 from planner_reactor.rs.terms import Process, Program
 from planner_reactor.rs.vocabulary import BUILT_IN

@@ -5,7 +5,8 @@ from __future__ import annotations
 import pytest
 
 from planner_reactor.analysis.explore import Exploration, explore
-from planner_reactor.rs.evolves import Config, World, started
+from planner_reactor.rs.configurations import Config, World
+from planner_reactor.rs.evolves import started
 from planner_reactor.rs.leaves import Step, resting
 from planner_reactor.rs.parser import parse_process, parse_program
 from planner_reactor.rs.states import Ended, Leaf, parts_of

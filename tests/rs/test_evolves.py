@@ -6,7 +6,8 @@ import pytest
 
 from planner_reactor.analysis.explore import explore
 from planner_reactor.errors import BudgetError
-from planner_reactor.rs.evolves import Config, World, spawned_situations, started
+from planner_reactor.rs.configurations import Config, World, spawned_situations
+from planner_reactor.rs.evolves import started
 from planner_reactor.rs.leaves import elapsed, slack, steps
 from planner_reactor.rs.parser import parse_process, parse_program
 from planner_reactor.rs.states import Ended

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from planner_reactor.analysis.equivalence import behaviour, bisimilar
-from planner_reactor.rs.evolves import World
+from planner_reactor.rs.configurations import World
 from planner_reactor.rs.parser import parse_process
 from planner_reactor.rs.terms import (
     ABORT,

@@ -10,7 +10,8 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 from planner_reactor.errors import BudgetError, PlannerReactorError
-from planner_reactor.rs.evolves import Config, Ending, Label, Oracle, World, started
+from planner_reactor.rs.configurations import Config, Ending, Label, Oracle, World
+from planner_reactor.rs.evolves import started
 from planner_reactor.rs.leaves import elapsed, slack, steps
 from planner_reactor.rs.states import Bindings, Ended
 from planner_reactor.rs.terms import Process, Value

@@ -12,7 +12,8 @@ from dataclasses import dataclass
 
 from planner_reactor.analysis.explore import canonical, successors
 from planner_reactor.errors import BudgetError
-from planner_reactor.rs.evolves import Config, Label, World, started
+from planner_reactor.rs.configurations import Config, Label, World
+from planner_reactor.rs.evolves import started
 from planner_reactor.rs.states import Ended
 from planner_reactor.rs.terms import Process
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field, fields, is_dataclass, replace
 from math import inf
 from typing import Any
 
-from planner_reactor.rs.evolves import Config, Label, World
+from planner_reactor.rs.configurations import Config, Label, World
 from planner_reactor.rs.leaves import Step, elapsed, slack, steps, window
 from planner_reactor.rs.states import InstanceNumber, Leaf
 

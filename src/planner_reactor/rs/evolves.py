@@ -13,13 +13,12 @@ leftmost among equals, the `#`s of which a part has ended.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass, field, replace
-from typing import TypeAlias
+from collections.abc import Iterator
+from dataclasses import replace
 
 from planner_reactor.errors import BudgetError
+from planner_reactor.rs.configurations import Config, World
 from planner_reactor.rs.expressions import EvaluationError, Unbound, evaluate
-from planner_reactor.rs.prelude import PRELUDE
 from planner_reactor.rs.states import (
     Await,
     Bindings,
@@ -37,15 +36,12 @@ from planner_reactor.rs.states import (
     Run,
     Serve,
     Spawning,
-    Spot,
     Testing,
     Waiting,
     bind,
     leaf_of,
     only,
     parts_of,
-    put,
-    spots,
     variables,
     with_parts,
 )
@@ -60,63 +56,15 @@ from planner_reactor.rs.terms import (
     Not,
     Par,
     Process,
-    Program,
-    Schema,
     Seq,
     Spawn,
     Value,
     cond,
-    operands,
     seq,
 )
-from planner_reactor.rs.vocabulary import BUILT_IN, Signature
-
-Functions: TypeAlias = Mapping[str, Callable[..., Value]]
-Label: TypeAlias = tuple[str, tuple[Value, ...], str, tuple[Value, ...]]
-"""(name, arguments, "ok" | "ab" | "wait", values): what an observer of a step sees."""
-
-Ending: TypeAlias = tuple[bool, tuple[Value, ...]]
-Oracle: TypeAlias = Callable[[str, tuple[Value, ...]], Iterable[Ending]]
-"""How a basic process may end, with which values: concrete runs are deterministic but for this."""
 
 UNFOLDING_LIMIT = 100
 """Calls that may unfold without a leaf between them; guardedness is checked when a program is loaded."""
-
-
-@dataclass(frozen=True, slots=True)
-class World:
-    """What a configuration evolves under: definitions, signatures of the leaves, functions, endings."""
-
-    program: Program = field(default_factory=Program)
-    signatures: Mapping[str, Signature] = field(default_factory=lambda: BUILT_IN)
-    functions: Functions = field(default_factory=dict)
-    endings: Oracle = lambda name, arguments: [(True, ()), (False, ())]
-    spawned: frozenset[str] = frozenset()  # situations served by `::`: they may be asserted from below themselves
-
-    def select(self, name: str, values: tuple[Value, ...]) -> Schema | None:
-        return self.program.select(name, values) or PRELUDE.select(name, values)
-
-    def defines(self, name: str) -> bool:
-        return bool(self.program.clauses(name) or PRELUDE.clauses(name))
-
-
-@dataclass(frozen=True, slots=True)
-class Config:
-    """The running roots, in order of their start, and the store that they share."""
-
-    roots: tuple[tuple[int, Run], ...] = ()
-    store: Store = field(default_factory=Store)
-
-    def root(self, number: int) -> Run:
-        return next(term for n, term in self.roots if n == number)
-
-    def spots(self) -> Iterator[Spot]:
-        for number, term in self.roots:
-            yield from spots(term, number)
-
-    def put(self, spot: Spot, new: Run) -> Config:
-        roots = tuple((n, put(t, spot.path, new) if n == spot.root else t) for n, t in self.roots)
-        return replace(self, roots=roots)
 
 
 def started(process: Process, world: World, *, config: Config | None = None) -> Config:
@@ -396,15 +344,3 @@ def abort(term: Run, store: Store, root: int) -> Store:
             if isinstance(term, Serve):
                 store = replace(store.left(term.instance, term.reaction), cut=store.cut + 1)
             return store
-
-
-def spawned_situations(program: Program, *processes: Process) -> frozenset[str]:
-    """The situations that are served by `::` somewhere: they may be asserted from below themselves."""
-    found: set[str] = set()
-    waiting: list[Process] = [s.body for s in program.schemas] + list(processes)
-    while waiting:
-        term = waiting.pop()
-        if isinstance(term, Spawn) and isinstance(term.condition, Call) and term.condition.name == "SIT":
-            found.update(getattr(a, "name", "") for a in term.condition.arguments[:1])
-        waiting += operands(term)
-    return frozenset(found)

@@ -12,7 +12,8 @@ from dataclasses import dataclass, replace
 from math import inf
 from typing import TypeAlias
 
-from planner_reactor.rs.evolves import Config, Label, World, settle
+from planner_reactor.rs.configurations import Config, Label, World
+from planner_reactor.rs.evolves import settle
 from planner_reactor.rs.states import (
     Await,
     Bindings,
