@@ -154,6 +154,22 @@ def terminate(term: Run, store: Store, world: World, root: int) -> tuple[Run, St
         if any(new is not old for new, old in zip(after, parts, strict=True)):
             term = with_parts(term, tuple(after))
     match term:
+        case Chain():
+            return _chain(term, store, world)
+        case Testing() | Round():
+            return _loop(term, store, world)
+        case Spawning():
+            return _spawning(term, store, world)
+        case Serve(_, k, g, Ended() as ended):  # {x.r}_{s,k,g} = x.r, and the body leaves `run`
+            return ended, store.left(k, g)
+        case Await() | Queued() | Waiting():
+            return _granted(term, store, root)
+        case _:
+            return _joined(term, world), store
+
+
+def _chain(term: Chain, store: Store, world: World) -> tuple[Run, Store]:
+    match term:
         # N1  ok.r;Q = ab.r;Q = r>Q[r]
         case Chain(";", Ended(_, r), rest, scope):
             return Keep(r, begin(rest, bind(scope, r), world)), store
@@ -166,28 +182,49 @@ def terminate(term: Run, store: Store, world: World, root: int) -> tuple[Run, St
         case Chain(_, Delivered() as d, rest, scope):
             body, store = _served(d, rest, scope, store, world)
             return Keep(d.bindings, body), store
+        case _:
+            return term, store
+
+
+def _served(d: Delivered, rest: Process, scope: Bindings, store: Store, world: World) -> tuple[Run, Store]:
+    body = begin(rest, bind(scope, d.bindings), world)
+    return Serve(d.situation, d.instance, d.reaction, body), store.entered(d.instance, d.reaction)
+
+
+def _joined(term: Run, world: World) -> Run:
+    match term:
         # N3  ~ swaps ok and ab, keeps r
         case Inverted(Ended(ok, r, cause)):
-            return Ended(not ok, r, cause), store
+            return Ended(not ok, r, cause)
         # N4  x.r | y.r' = (x or y).(r+r')      N4'  & : (x and y)
         case Group("|" | "&" as operator, parts) if all(isinstance(p, Ended) for p in parts):
             outcomes = [p.ok for p in parts if isinstance(p, Ended)]
             ok = any(outcomes) if operator == "|" else all(outcomes)
             causes = [p.cause for p in parts if isinstance(p, Ended) and p.cause]
             bindings = bind(*(p.bindings for p in parts if isinstance(p, Ended)))
-            return Ended(ok, bindings, "" if ok or not causes else causes[0]), store
+            return Ended(ok, bindings, "" if ok or not causes else causes[0])
         # N6  r > x.r' = x.(r+r')     [x.r]_A = x.(r|A)     [[T]]_{} = [T]_{}  so that tail calls take no space
         case Keep(r, Ended(ok, s, cause)):
-            return Ended(ok, bind(r, s), cause), store
+            return Ended(ok, bind(r, s), cause)
         case Keep((), body):
-            return body, store
+            return body
         case Keep(r, Keep(s, body)):
-            return Keep(bind(r, s), body), store
+            return Keep(bind(r, s), body)
         case Export(renamed, Ended(ok, r, cause)):
             given = dict(r)
-            return Ended(ok, bind(tuple((y, given[x]) for x, y in renamed if x in given)), cause), store
+            return Ended(ok, bind(tuple((y, given[x]) for x, y in renamed if x in given)), cause)
         case Export((), Export(_, body)) | Export((), Keep(_, body)):
-            return Export((), body), store
+            return Export((), body)
+        # N10  C decides once
+        case Deciding(Ended(ok, r), branches, scope):
+            branch = branches.then if ok else branches.otherwise
+            return Keep(r, begin(branch, bind(scope, r), world))
+        case _:
+            return term
+
+
+def _loop(term: Testing | Round, store: Store, world: World) -> tuple[Run, Store]:
+    match term:
         # N8  A:;B = A : ([B]_{} ; (A:;B))
         case Testing(Ended(True, r), loop, scope):
             return Round(Export((), begin(loop.body, bind(scope, r), world)), loop, scope), store
@@ -198,29 +235,12 @@ def terminate(term: Run, store: Store, world: World, root: int) -> tuple[Run, St
             return Round(Export((), body), loop, scope), store
         case Round(Ended(), loop, scope):
             return begin(loop, scope, world), store
-        # N8  A::B = A : ([B]_{} | (A::B)); ended bodies are merged away
-        case Spawning():
-            return _spawning(term, store, world)
-        # N10  C decides once
-        case Deciding(Ended(ok, r), branches, scope):
-            branch = branches.then if ok else branches.otherwise
-            return Keep(r, begin(branch, bind(scope, r), world)), store
-        # a body of instance k ends: {x.r}_{s,k,g} = x.r, and it leaves `run`
-        case Serve(_, k, g, Ended() as ended_body):
-            return ended_body, store.left(k, g)
-        # what waits for the store
-        case Await() | Queued() | Waiting():
-            return _granted(term, store, root)
         case _:
             return term, store
 
 
-def _served(d: Delivered, rest: Process, scope: Bindings, store: Store, world: World) -> tuple[Run, Store]:
-    body = begin(rest, bind(scope, d.bindings), world)
-    return Serve(d.situation, d.instance, d.reaction, body), store.entered(d.instance, d.reaction)
-
-
 def _spawning(term: Spawning, store: Store, world: World) -> tuple[Run, Store]:
+    """N8  A::B = A : ([B]_{} | (A::B)); ended bodies are merged away."""
     bodies = tuple(b for b in term.bodies if not isinstance(b, Ended))
     stopped = term.stopped or any(b.ok for b in term.bodies if isinstance(b, Ended))
     match term.condition:
