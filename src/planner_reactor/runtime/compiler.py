@@ -288,10 +288,7 @@ class _Body:
             ab=exits.ab,
             failed=failed,
         )
-        if control is None:
-            leaf = LEAVES[call.name](setting, self.compiler.ports)
-        else:
-            leaf = Use(setting, control)
+        leaf = LEAVES[call.name](setting, self.compiler.ports) if control is None else Use(setting, control)
         self.leaves.append(leaf)
         return leaf
 

@@ -11,7 +11,7 @@ from __future__ import annotations
 from planner_reactor.runtime.instructions import enter, label_of
 from planner_reactor.runtime.kernel import Kernel
 from planner_reactor.runtime.outcomes import Guards, OpensBody
-from planner_reactor.runtime.strands import FORKED, NOWHERE, UNBOUND, Fork, Instruction, Strand, Where
+from planner_reactor.runtime.strands import FORKED, NOWHERE, UNBOUND, WOKEN, Fork, Instruction, Strand, Where
 from planner_reactor.runtime.values import Tuples
 
 Exports = tuple[tuple[tuple[int, int], ...], ...]
@@ -77,7 +77,10 @@ class ForkParts:
         strands = fork.strands()
         for part in strands:
             part.guard = label
-        control.guard_set(label, strands[index], tuple(strands[:index] + strands[index + 1 :]))
+        guarding = strands[index]
+        guarding.state = WOKEN  # from now on it waits there: it is cancelled should it never have its turn
+        self.kernel.ready.append(guarding)
+        control.guard_set(label, guarding, tuple(strands[:index] + strands[index + 1 :]))
 
 
 def open_fork(instruction: ForkParts | ForkSpawn, strand: Strand, *, first: bool, decisive: bool) -> Fork:

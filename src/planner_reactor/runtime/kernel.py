@@ -72,7 +72,7 @@ class Kernel:
             meter.instant = now
             meter.turns = 0
         meter.turns += 1
-        if meter.turns > self.turns:
+        if meter.turns > self.turns and meter.turns > self.turns + self.live:
             self.overrun(strand, pc)
         else:
             self.run(strand, pc)

@@ -11,13 +11,13 @@ from planner_reactor.runtime.strands import FORKED, OUTSIDE, OVER, SENSING, Stac
 
 def is_resting(strand: Strand) -> bool:
     """Is nothing below this strand in service?"""
-    around = strand.body
+    around = strand.fork.parent.body if strand.fork is not None else None
     pending = [(strand, OUTSIDE)]
     while pending:
         found, zone = pending.pop()
         if found.state == OVER:
             continue
-        if found.body is not around and (found is not strand or _opened(found)):
+        if found.body is not around:
             return False
         zone = zone or _zone(found)
         if found.state == FORKED:
@@ -25,10 +25,6 @@ def is_resting(strand: Strand) -> bool:
         elif zone != SENSING and not _rests(found):
             return False
     return True
-
-
-def _opened(strand: Strand) -> bool:
-    return strand.body is not None and strand.body.strand is strand
 
 
 def _rests(strand: Strand) -> bool:
