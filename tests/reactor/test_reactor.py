@@ -199,6 +199,15 @@ def test_a_process_itself_may_report_that_an_assumption_fails(bench: Bench) -> N
     assert bench.reactor.failed == {"A": 3.0}
 
 
+def test_what_a_process_reported_is_sent_again_until_nothing_rests_on_it(bench: Bench) -> None:
+    """R §9.2.3: "repeatedly sent to the planner until the planner disables that portion of the reactor"."""
+    bench.at(0.0, FIRST)
+    bench.scheduler.call_at(3.0, lambda: bench.host.report("A", False, "it slipped"))
+    bench.at(8.5, SECOND)
+    bench.run(30.0)
+    assert bench.times("assumption_failure", assumption="A") == [3.0, 5.0, 7.0]
+
+
 def test_an_assumption_that_holds_again_is_told_and_enables(bench: Bench) -> None:
     hold = "P[9] = HOLDMONITOR[A, 1000]"
     bench.at(0.0, replace(FIRST, definitions=FIRST.definitions + hold, adds=(*FIRST.adds, 9)))

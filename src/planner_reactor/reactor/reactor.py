@@ -34,6 +34,9 @@ EQUATION_3 = parse_program(f"REACTOR = ADD<m> :: (E[m] # {REACTION}[m])", file="
 TOLD_CAUSES = frozenset({"failed", "error", "budget", "assumption"})
 """Causes of failed instances that the planner hears of; the others follow from what it knows already."""
 
+REPEAT = 2.0
+"""Seconds after which a failure that a process noticed is sent again (R §9.2.3; the monitors' period in R §8.3)."""
+
 MARGIN = 1.0
 """Seconds added to a computed bound, for the monitors and the clock."""
 
@@ -95,7 +98,7 @@ class Reactor:
         )
         built_in.attach(self.executer)
         self.transactions = Transactions(self.executer, scheduler, self._finished)
-        self.host.listen(lambda assumption, holds, evidence: self.assumption_sensed(assumption, holds))
+        self.host.listen(self._noticed)
 
     def start(self) -> Root:
         """Begin to act, with no reactions yet."""
@@ -271,6 +274,21 @@ class Reactor:
         self.failed.setdefault(assumption, self.scheduler.now)
         self.perceive("assumption_failure", assumption)
         self._disable_what_must_be()
+
+    def _noticed(self, assumption: str, holds: bool, evidence: str) -> None:
+        """A process noticed by itself: a failure is sent again while something rests on it (nobody asks)."""
+        known = assumption in self.failed
+        self.assumption_sensed(assumption, holds)
+        if not holds and not known:
+            self._repeat_later(assumption, self.failed[assumption])
+
+    def _repeat_later(self, assumption: str, since: float) -> None:
+        def repeat() -> None:
+            if self.failed.get(assumption) == since and self.resting_on(assumption):
+                self.assumption_sensed(assumption, False)
+                self._repeat_later(assumption, since)
+
+        self.scheduler.call_after(REPEAT, repeat)
 
     def _disable_what_must_be(self) -> None:
         """Exactly the situations that rest on a failed assumption are disabled by it."""
