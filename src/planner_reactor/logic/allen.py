@@ -145,10 +145,7 @@ _composed: dict[int, int] = {}
 def _inverses() -> list[int]:
     """Inverses of all 8192 sets: those of the bases stand side by side, `e` is its own."""
     odd, even = 0b0101010101010, 0b0010101010101
-    return [
-        (relation & even & 0xFFF) << 1 | (relation & odd) >> 1 | relation & BIT["e"]
-        for relation in range(ALL + 1)
-    ]
+    return [(relation & even & 0xFFF) << 1 | (relation & odd) >> 1 | relation & BIT["e"] for relation in range(ALL + 1)]
 
 
 _INVERSE = _inverses()

@@ -46,9 +46,7 @@ class Survey:
             if not intervals.get(name.text, True) and name.text != TIME:
                 self._warn(name, "unused-interval", f"the interval {name.text} is never used")
         if not schema.effects:
-            self._warn(
-                node.name, "no-effects", f"{node.name.text} has no effects, so nothing can ever ask for it"
-            )
+            self._warn(node.name, "no-effects", f"{node.name.text} has no effects, so nothing can ever ask for it")
         if schema.abstract and (schema.senses or schema.cleanup):
             mark = node.marks[0]
             message = f"{node.name.text} is abstract, {mark} has no meaning for it"
@@ -56,9 +54,7 @@ class Survey:
         mentioned = {a for e in (*schema.effects, *schema.otherwise) for a in e.atom.arguments}
         for name, variable in zip(node.outputs, schema.outputs, strict=True):
             if variable not in mentioned:
-                self._warn(
-                    name, "unused-result", f"no effect of {node.name.text} says anything of {name.text}"
-                )
+                self._warn(name, "unused-result", f"no effect of {node.name.text} says anything of {name.text}")
 
     def _warn(self, name: Name, code: str, message: str) -> None:
         self.odd.append(self.source.diagnostic(name.offset, code, message, severity="warning"))
@@ -98,9 +94,7 @@ def _arities(survey: Survey, domain: Domain) -> Iterator[Diagnostic]:
         for node, _ in uses:
             if len(node.arguments) != expected:
                 message = f"{predicate} with {len(node.arguments)} arguments"
-                yield survey.source.diagnostic(
-                    node.name.offset, "arity", message, f"expected {expected}, {where}"
-                )
+                yield survey.source.diagnostic(node.name.offset, "arity", message, f"expected {expected}, {where}")
 
 
 def _never_produced(survey: Survey, domain: Domain) -> Iterator[Diagnostic]:
@@ -112,9 +106,7 @@ def _never_produced(survey: Survey, domain: Domain) -> Iterator[Diagnostic]:
             severity = "error" if role == "needed" else "warning"
             message = f"nothing brings about {predicate}: no fact, rule, effect or assumption"
             hint = nearest(predicate, sorted(produced))
-            yield survey.source.diagnostic(
-                node.name.offset, "unknown-predicate", message, hint, severity=severity
-            )
+            yield survey.source.diagnostic(node.name.offset, "unknown-predicate", message, hint, severity=severity)
 
 
 def _never_used(survey: Survey, domain: Domain) -> Iterator[Diagnostic]:

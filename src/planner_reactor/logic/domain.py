@@ -191,16 +191,12 @@ class Domain:
         self.goals: Mapping[str, Goal] = MappingProxyType({g.name: g for g in goals})
         self.rules = tuple(rules)
         self.exclusions = tuple(exclusions)
-        self.persistences: Mapping[str, tuple[Persistence, ...]] = _grouped(
-            (p.atom.predicate, p) for p in persistences
-        )
+        self.persistences: Mapping[str, tuple[Persistence, ...]] = _grouped((p.atom.predicate, p) for p in persistences)
         self.facts: Mapping[str, tuple[Atom, ...]] = _grouped((f.predicate, f) for f in facts)
         self.schemas: Mapping[str, ActionSchema] = MappingProxyType({s.name: s for s in schemas})
         self.rules_for: Mapping[str, tuple[Rule, ...]] = _grouped((r.head.predicate, r) for r in self.rules)
         self.producers: Mapping[str, tuple[tuple[ActionSchema, Effect], ...]] = _grouped(
-            (effect.atom.predicate, (schema, effect))
-            for schema in self.schemas.values()
-            for effect in schema.effects
+            (effect.atom.predicate, (schema, effect)) for schema in self.schemas.values() for effect in schema.effects
         )
         self.excluding: Mapping[str, tuple[tuple[Exclusion, Atom, Atom], ...]] = _grouped(
             (one.predicate, (rule, one, other))

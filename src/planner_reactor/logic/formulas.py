@@ -9,7 +9,7 @@ only if they are equal.
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterator
+from collections.abc import Hashable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import TypeAlias
 
@@ -90,6 +90,11 @@ class Bindings:
         """The atom with every bound variable replaced by what it stands for."""
         walk = self.walk
         return Atom(atom.predicate, tuple([walk(a) for a in atom.arguments]))
+
+
+def filled(atom: Atom, given: Mapping[int, Term]) -> Atom:
+    """The atom with some of its variables replaced."""
+    return Atom(atom.predicate, tuple([given.get(a, a) if type(a) is int else a for a in atom.arguments]))
 
 
 def variables(atoms: tuple[Atom, ...]) -> Iterator[int]:

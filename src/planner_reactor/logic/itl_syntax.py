@@ -88,9 +88,7 @@ class _Parser:
     def sentence(self) -> Sentence:
         read = self._sentences.get(self.token.text)
         if read is None:
-            raise self._wrong(
-                f"a sentence of the domain: one of {', '.join(self._sentences)}", self._sentences
-            )
+            raise self._wrong(f"a sentence of the domain: one of {', '.join(self._sentences)}", self._sentences)
         self._advance()
         return read()
 
@@ -121,9 +119,7 @@ class _Parser:
                 elif not self._taken("reaction"):
                     raise self._wrong("flag MILLISECONDS or reaction", ("flag", "reaction"))
             else:
-                raise self._wrong(
-                    "likelihood, monitor, reinstatable or ;", ("likelihood", "monitor", "reinstatable")
-                )
+                raise self._wrong("likelihood, monitor, reinstatable or ;", ("likelihood", "monitor", "reinstatable"))
         return AssumptionNode(name, parameters, likelihood, period, monitor, reinstatable)
 
     def _goal(self) -> GoalNode:
@@ -294,9 +290,7 @@ class _Parser:
 
     def _unknown_relation(self, name: Name) -> _WrongSentence:
         known = (*NAMED, *BASES)
-        hint = (
-            nearest(name.text, known) or f"expected one of {', '.join(NAMED)} or a list of {' '.join(BASES)}"
-        )
+        hint = nearest(name.text, known) or f"expected one of {', '.join(NAMED)} or a list of {' '.join(BASES)}"
         message = f"{name.text} is not a relation between intervals"
         return _WrongSentence(self.source.diagnostic(name.offset, "unknown-relation", message, hint))
 
@@ -367,6 +361,4 @@ class _Parser:
         found = self.token.text or "the end of the text"
         near = nearest(found, words) if isinstance(words, (tuple, dict)) else ""
         hint = f"expected {expected}" + (f"; {near}" if near else "")
-        return _WrongSentence(
-            self.source.diagnostic(self.token.offset, "syntax", f"unexpected {found}", hint)
-        )
+        return _WrongSentence(self.source.diagnostic(self.token.offset, "syntax", f"unexpected {found}", hint))

@@ -56,9 +56,7 @@ def _read_line(line: str) -> tuple[str, str, int]:
     rest = line[second.end() :]
     if rest.strip():
         column = second.end() + 1 + len(rest) - len(rest.lstrip())
-        raise _WrongError(
-            column, "unexpected", f"{rest.strip()} after the constraint", "expected the end of the line"
-        )
+        raise _WrongError(column, "unexpected", f"{rest.strip()} after the constraint", "expected the end of the line")
     return first[1], second[1], relation
 
 
@@ -73,9 +71,7 @@ def _read_relation(line: str, start: int) -> tuple[int, int]:
         found = re.split(r"[\s,]+", inside.strip()) if inside.strip() else []
         column = listed.start(1 if listed[1] is not None else 2) + 1
         if not found:
-            raise _WrongError(
-                column, "no-relation", "an empty list of relations", f"expected some of {_BASES}"
-            )
+            raise _WrongError(column, "no-relation", "an empty list of relations", f"expected some of {_BASES}")
     elif word:
         found, column = [word[1]], word.start(1) + 1
         if word[1] in NAMED:

@@ -142,9 +142,7 @@ class _Builder:
             self._error(node.likelihood, "likelihood", f"a likelihood of {likelihood}", "expected 0 to 1")
         period = 2000 if node.period is None else int(float(node.period.text))
         if period <= 0:
-            self._error(
-                node.period or node.name, "period", f"a period of {period} ms", "expected more than 0"
-            )
+            self._error(node.period or node.name, "period", f"a period of {period} ms", "expected more than 0")
         return Assumption(
             node.name.text,
             len(node.parameters),
@@ -232,9 +230,7 @@ class _Builder:
         given = tuple(atom for at, atom in atoms if all(at is not end[0] for end in ends))
         place = self._source.place(node.offset)
         distinct = self._distinct(node.left, scope)
-        self._exclusions.append(
-            Exclusion(ends[0][1], ends[1][1], given, distinct, len(scope.variables), place)
-        )
+        self._exclusions.append(Exclusion(ends[0][1], ends[1][1], given, distinct, len(scope.variables), place))
 
     def _persistence(self, node: PersistenceNode, scope: Scope) -> Persistence:
         if node.forall:

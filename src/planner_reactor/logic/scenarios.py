@@ -56,9 +56,7 @@ def scenario(network: Network, *, limit: int = 100_000) -> dict[tuple[Interval, 
 
 def holds_in(network: Network, times: Mapping[Interval, tuple[float, float]]) -> bool:
     """Do these starts and ends satisfy every relation of the network?"""
-    return all(
-        base_relation(times[first], times[second]) & relation for first, second, relation in network.edges()
-    )
+    return all(base_relation(times[first], times[second]) & relation for first, second, relation in network.edges())
 
 
 @cache
@@ -67,9 +65,7 @@ def parts(relation: int) -> tuple[int, ...]:
     found: list[int] = []
     left = relation
     while left:
-        best = max(
-            (p for p in pointisable() if p & ~relation == 0), key=lambda p: ((p & left).bit_count(), -p)
-        )
+        best = max((p for p in pointisable() if p & ~relation == 0), key=lambda p: ((p & left).bit_count(), -p))
         found.append(best)
         left &= ~best
     return tuple(found)
@@ -99,8 +95,7 @@ def _comparisons() -> dict[tuple[int, int], tuple[int, ...]]:
     for first, second in product(spans, spans):
         example.setdefault(base_relation(first, second), (first, second))
     return {
-        (x, y): tuple(_sign(example[1 << n][0][x] - example[1 << n][1][y]) for n in range(len(BASES)))
-        for x, y in _ENDS
+        (x, y): tuple(_sign(example[1 << n][0][x] - example[1 << n][1][y]) for n in range(len(BASES))) for x, y in _ENDS
     }
 
 

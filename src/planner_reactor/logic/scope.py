@@ -36,9 +36,7 @@ class Scope:
         self._wrong = wrong
         self._constants = constants
 
-    def finding(
-        self, name: Name, code: str, message: str, hint: str = "", *, severity: str = "error"
-    ) -> None:
+    def finding(self, name: Name, code: str, message: str, hint: str = "", *, severity: str = "error") -> None:
         found = self.source.diagnostic(name.offset, code, message, hint, severity=severity)
         if found not in self._wrong:
             self._wrong.append(found)
@@ -99,9 +97,7 @@ class Scope:
         name = self.interval(interval)
         if name == centre:
             return NAMED["equal"]
-        constraints = [
-            literal for c in clauses for literal in c.literals if isinstance(literal, RelationNode)
-        ]
+        constraints = [literal for c in clauses for literal in c.literals if isinstance(literal, RelationNode)]
         found, related = ALL, False
         for node in constraints:
             ends = (node.first.text, node.second.text)

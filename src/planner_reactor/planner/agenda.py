@@ -1,8 +1,8 @@
 """What to plan next (R §7.3): failed situations > failed assumptions > active stubs > quiescent stubs.
 
-Among equals what comes first in the text of the reactor. Situations that an adaptation under way touches are put
-aside until it is answered. Entries that have become out of date (planned meanwhile, or raised) are dropped when they
-come up, so that nothing here depends on how many situations there are.
+Among equals what comes first in the text of the reactor. Situations that an adaptation under way touches
+are put aside until it is answered. Entries that have become out of date (planned meanwhile, or raised) are
+dropped when they come up, so that nothing here depends on how many situations there are.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from heapq import heappop, heappush
 from typing import TypeAlias
 
 from planner_reactor.planner.model import Model, Segment
-from planner_reactor.planner.refinement import Situation
+from planner_reactor.planner.situations import Situation
 
 FAILED_SITUATION, FAILED_ASSUMPTION, ACTIVE_STUB, QUIESCENT = range(4)
 

@@ -1,8 +1,8 @@
 """The problem-solving context: what the planner takes to be so while it plans (R §7.2).
 
-`Beliefs` hold every assumption that there is no evidence against, the domain's facts, and what the reactor has told
-on request. They answer what a plan may rest on, and say which assumptions an answer used or missed. Immutable: the
-planner makes new ones when it relaxes, reinstates or learns something.
+`Beliefs` hold every assumption that there is no evidence against, the domain's facts, and what the reactor
+has told on request. They answer what a plan may rest on, and say which assumptions an answer used or
+missed. Immutable: the planner makes new ones when it relaxes, reinstates or learns something.
 """
 
 from __future__ import annotations
@@ -16,7 +16,9 @@ from planner_reactor.logic.formulas import Atom, Bindings, Numeral
 
 @dataclass(frozen=True, slots=True)
 class Answer:
-    """Does something hold? `used` are the assumptions that it rests on, `missing` those without which it fails."""
+    """Does something hold? `used` are the assumptions that it rests on, `missing` those without which
+    it fails.
+    """
 
     holds: bool
     used: frozenset[str] = frozenset()
@@ -28,7 +30,9 @@ _CERTAIN = Answer(True)
 
 @dataclass(frozen=True, slots=True)
 class Beliefs:
-    """Assumptions in doubt (`relaxed`), and ground atoms known beyond the domain's facts (`told`: true or false)."""
+    """Assumptions in doubt (`relaxed`), and ground atoms known beyond the domain's facts (`told`: true
+    or false).
+    """
 
     domain: Domain
     relaxed: frozenset[str] = frozenset()
@@ -45,13 +49,16 @@ class Beliefs:
         return replace(self, told=self.told - {(atom, not holds)} | {(atom, holds)})
 
     def assume(self, atoms: Iterable[Atom], bindings: Bindings | None = None) -> Answer:
-        """Do all of these assumptions hold? An assumption with arguments fails with its name or for them alone."""
-        used, missing = [], []
+        """Do all of these assumptions hold? An assumption with arguments fails as a whole, or for
+        them alone.
+        """
+        used: list[str] = []
+        missing: list[str] = []
         for atom in atoms:
             name = atom.predicate
             if atom.arguments:
                 name = assumption_name(bindings.ground(atom) if bindings else atom)
-            (missing if name in self.relaxed or atom.predicate in self.relaxed else used).append(name)
+            (missing if in_doubt(name, self.relaxed) else used).append(name)
         return Answer(not missing, frozenset(used), frozenset(missing)) if used or missing else _CERTAIN
 
     def known(self, atom: Atom) -> bool | None:
@@ -61,7 +68,9 @@ class Beliefs:
         return False if (atom, False) in self.told else None
 
     def lasting(self, atom: Atom) -> Answer:
-        """Does it last until something excludes it? If its persistence rests on assumptions, only with them."""
+        """Does it last until something excludes it? If its persistence rests on assumptions, only
+        with them.
+        """
         for persistence in self.domain.persistences.get(atom.predicate, ()):
             bindings = Bindings()
             offset = 1 + max((a for a in atom.arguments if type(a) is int), default=-1)
@@ -73,6 +82,23 @@ class Beliefs:
     def assumption(self, name: str) -> Assumption:
         """The declaration behind a name such as `A` or `A(x)`."""
         return self.domain.assumptions[name.partition("(")[0]]
+
+
+def in_doubt(name: str, relaxed: frozenset[str]) -> bool:
+    """Is the assumption relaxed, it or the whole that it belongs to? The whole is, too, if it is
+    relaxed in part.
+    """
+    if not relaxed:
+        return False
+    whole, bracket, _ = name.partition("(")
+    if name in relaxed or whole in relaxed:
+        return True
+    return not bracket and any(other.startswith(f"{name}(") for other in relaxed)
+
+
+def told_apart(relaxed: frozenset[str]) -> frozenset[str]:
+    """The constants for which alone some assumption is relaxed."""
+    return frozenset(c for name in relaxed if "(" in name for c in name.partition("(")[2][:-1].split(","))
 
 
 def assumption_name(atom: Atom) -> str:

@@ -1,14 +1,14 @@
 """From refinements to adaptations: what is new, what goes, which monitors come and go (R §7.2, §8.3).
 
-An `Issuer` compares a draft (one situation planned anew, with the sub-situations that are new) with the model, writes
-the difference as one adaptation, and records it in the model at once; if the reactor does not apply it, everything is
-taken back. Labels and ids are never used twice. While an adaptation is under way the situations that it touches are
-held back.
+An `Issuer` compares a draft (one situation planned anew, with the sub-situations that are new) with the
+model, writes the difference as one adaptation, and records it in the model at once; if the reactor does not
+apply it, everything is taken back. Labels and ids are never used twice. While an adaptation is under way
+the situations that it touches are held back.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from planner_reactor.link.messages import Adaptation, Change, Mode
@@ -16,7 +16,7 @@ from planner_reactor.logic.formulas import Atom
 from planner_reactor.planner import reactions
 from planner_reactor.planner.beliefs import Beliefs
 from planner_reactor.planner.model import Model, Segment
-from planner_reactor.planner.refinement import Refinement, Situation
+from planner_reactor.planner.situations import Refinement, Situation
 from planner_reactor.planner.structure import Action
 from planner_reactor.rs.terms import Process
 
@@ -26,7 +26,9 @@ Monitor = tuple[str, str]
 
 @dataclass(slots=True)
 class Draft:
-    """A situation that is being planned, with the sub-situations that have to be planned before it is issued."""
+    """A situation that is being planned, with the sub-situations that have to be planned before it is
+    issued.
+    """
 
     segment: Segment
     purpose: str
@@ -92,7 +94,9 @@ class Issuer:
         return frozenset({segment.situation, *draft.refinements, *fresh, *callers, *(o.situation for o in gone)})
 
     def issue(self, draft: Draft, beliefs: Beliefs, holding: Mapping[str, int]) -> Adaptation | None:
-        """Record the draft in the model and write the adaptation; None if nothing in the reactor has to change."""
+        """Record the draft in the model and write the adaptation; None if nothing in the reactor
+        has to change.
+        """
         segment, model = draft.segment, self.model
         refinement = draft.refinements[segment.situation]
         process = reactions.reaction(refinement, model.names, fold=self.fold)
@@ -180,9 +184,7 @@ class Issuer:
             process = reactions.reaction(refinement, self.model.names, fold=self.fold)
         self._replace(parts, segment, process)
         assumptions = tuple(sorted(segment.required))
-        parts.changes.append(
-            Change(situation=segment.name, base=segment.version, assumptions=assumptions, fresh=True)
-        )
+        parts.changes.append(Change(situation=segment.name, base=segment.version, assumptions=assumptions, fresh=True))
 
     def _watch(self, parts: _Parts, beliefs: Beliefs, holding: Mapping[str, int]) -> None:
         """Bring the monitors into line with the assumptions in use."""

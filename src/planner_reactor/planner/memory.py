@@ -1,8 +1,9 @@
 """Refinements that were worked out before, for use under beliefs that say the same about them.
 
-What a refinement depends on is the situation, its context, and the assumptions that it rests on or looked for in vain:
-it serves again wherever those that it uses hold and those that it missed do not. Situations that differ only in
-constants that the domain does not tell apart share one refinement, with the constants exchanged.
+What a refinement depends on is the situation, its context, and the assumptions that it rests on or looked
+for in vain: it serves again wherever those that it uses hold and those that it missed do not. Situations
+that differ only in constants that the domain does not tell apart share one refinement, with the constants
+exchanged.
 """
 
 from __future__ import annotations
@@ -11,8 +12,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from planner_reactor.logic.formulas import Term
-from planner_reactor.planner.beliefs import Beliefs
-from planner_reactor.planner.refinement import Context, Refinement, Situation
+from planner_reactor.planner.beliefs import Beliefs, told_apart
+from planner_reactor.planner.situations import Context, Refinement, Situation
 from planner_reactor.planner.theory import Theory
 
 MOST = 20_000
@@ -32,7 +33,8 @@ class Memory:
         self, situation: Situation, context: Context, beliefs: Beliefs, work_out: Callable[[], Refinement]
     ) -> Refinement:
         """The refinement, from memory or worked out now."""
-        kinds = tuple(self._kind(a) for a in situation.arguments)
+        apart = told_apart(beliefs.relaxed)
+        kinds = tuple(a if a in apart else self._kind(a) for a in situation.arguments)
         same = tuple(situation.arguments.index(a) for a in situation.arguments)
         key = (situation.schema, kinds, same, context, beliefs.told)
         for known in self._known.get(key, ()):

@@ -1,8 +1,9 @@
 """What the planner knows of the reactor: its own record of what it issued and what was applied (R §7.1, R_t).
 
-One `Segment` for each situation: its reaction, the version of it that the reactor has, how it was refined and on
-which assumptions it rests. The situations form an acyclic digraph; what a situation may count on (its `Context`) is
-what all that assert it grant. `impossible` segments are those for which no plan was found, with the reason.
+One `Segment` for each situation: its reaction, the version of it that the reactor has, how it was refined
+and on which assumptions it rests. The situations form an acyclic digraph; what a situation may count on
+(its `Context`) is what all that assert it grant. `impossible` segments are those for which no plan was
+found, with the reason.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field, replace
 
 from planner_reactor.planner.reactions import Names
-from planner_reactor.planner.refinement import Child, Context, Refinement, Situation
+from planner_reactor.planner.situations import Child, Context, Refinement, Situation
 from planner_reactor.rs.terms import Process
 
 
@@ -20,9 +21,9 @@ from planner_reactor.rs.terms import Process
 class Segment:
     """One situation in the reactor, as far as is known.
 
-    `path` leads to it from the root, by the places of calls; what comes earlier in the text is planned earlier.
-    `refinement` is None for a stub. `pending` is the adaptation under way that changes it. `stale`: it has to be
-    planned again, because an assumption, a caller or the knowledge changed.
+    `path` leads to it from the root, by the places of calls; what comes earlier in the text is planned
+    earlier. `refinement` is None for a stub. `pending` is the adaptation under way that changes it.
+    `stale`: it has to be planned again, because an assumption, a caller or the knowledge changed.
     """
 
     situation: Situation

@@ -1,8 +1,9 @@
 """A partial plan: steps, what supports their conditions, and how they lie in time (R §7.2, §7.4).
 
-The steps are intervals of an Allen network; the intervals of conditions and effects are eliminated by composition: a
-step that `meets` its effect, which must `[m o si e di fi]` its user, is `[b m]` that user. `Link` records that an
-effect is used, so that it can be protected. Everything can be undone to a mark, because search backtracks.
+The steps are intervals of an Allen network; the intervals of conditions and effects are eliminated by
+composition: a step that `meets` its effect, which must `[m o si e di fi]` its user, is `[b m]` that user.
+`Link` records that an effect is used, so that it can be protected. Everything can be undone to a mark,
+because search backtracks.
 
 Legend: START stands for what holds when the situation is asserted, END for the moment when it succeeds.
 """
@@ -70,9 +71,9 @@ class Step:
 class Link:
     """`atom`, from `producer`, supports condition number `condition` of `consumer`.
 
-    `throughout`: it is needed until the consumer has ended, else only when it starts. `maintained`: it holds only
-    while the producer runs. `derived`: a rule says so on assumptions. `lost`: the consumer is abstract and cannot
-    count on it for as long as it runs, because nothing makes it last.
+    `throughout`: it is needed until the consumer has ended, else only when it starts. `maintained`: it
+    holds only while the producer runs. `derived`: a rule says so on assumptions. `lost`: the consumer is
+    abstract and cannot count on it for as long as it runs, because nothing makes it last.
     """
 
     atom: Atom
@@ -95,7 +96,9 @@ class Use:
 
 @dataclass(slots=True)
 class Plan:
-    """The mutable state of a search. Its steps count from `first`, so that plans that follow each other differ."""
+    """The mutable state of a search. Its steps count from `first`, so that plans that follow each
+    other differ.
+    """
 
     bindings: Bindings = field(default_factory=Bindings)
     network: Network = field(default_factory=Network)

@@ -1,24 +1,21 @@
 """The planner: two loops that never end (R §7.1, §7.3, §7.5, Fig. 4).
 
-The inner loop reduces the expectation, what the reactor for the assumptions held should have and does not have yet,
-one situation at a time; when nothing is left the reactor is ω-ideal, and the outer loop relaxes the assumption in use
-that is least likely to hold. Perceptions change what is done next:
+The inner loop reduces the expectation, what the reactor for the assumptions held should have and does not
+have yet, one situation at a time; when nothing is left the reactor is ω-ideal, and the outer loop relaxes
+the assumption in use that is least likely to hold. Perceptions change what is done next:
 
     failed situations > failed assumptions > active stubs > quiescent stubs
 
-A `step` is one short piece of work, so that a perception is never kept waiting. Nothing here depends on a clock or on
-chance: the same perceptions between the same steps give the same adaptations.
+A `step` is one short piece of work, so that a perception is never kept waiting. Nothing here depends on a
+clock or on chance: the same perceptions between the same steps give the same adaptations.
 """
 
 from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
-from types import MappingProxyType
-from typing import Literal, TypeAlias
+from dataclasses import replace
 
-from planner_reactor.errors import InputError, nearest
 from planner_reactor.link.messages import Adaptation, Mode, Perception
 from planner_reactor.logic.domain import ActionSchema, Domain
 from planner_reactor.logic.formulas import Atom
@@ -29,49 +26,29 @@ from planner_reactor.planner.agenda import (
     QUIESCENT,
     Agenda,
 )
-from planner_reactor.planner.beliefs import Beliefs
+from planner_reactor.planner.goals import chosen_goal, root_schema
 from planner_reactor.planner.issuing import Draft, Issuer, UnderWay
 from planner_reactor.planner.memory import Memory
 from planner_reactor.planner.model import Model, Segment
-from planner_reactor.planner.refinement import Context, Refinement, Situation, refine, root_schema
+from planner_reactor.planner.refinement import refine
+from planner_reactor.planner.relaxing import Assuming
 from planner_reactor.planner.sensing import observer_of
+from planner_reactor.planner.situations import Context, Refinement, Situation
+from planner_reactor.planner.steps import Cause, Relax, Relaxation, Step, StepKind
 from planner_reactor.planner.structure import first_action
 from planner_reactor.planner.theory import Theory
 
-Cause: TypeAlias = Literal["normal", "forced"]
-StepKind: TypeAlias = Literal["refine", "relax", "reinstate", "watch"]
 MOST_REFUSALS = 5
 """So often in a row the reactor may refuse what is planned for a situation."""
-
-
-@dataclass(frozen=True, slots=True)
-class Step:
-    """What one step did: worked on a `situation`, for the sake of an `assumption` (or ''), and what it issued."""
-
-    kind: StepKind
-    situation: str = ""
-    assumption: str = ""
-    cause: Cause | Literal["reinstated", ""] = ""
-    adaptations: tuple[Adaptation, ...] = ()
-    purpose: str = ""
-
-
-@dataclass(frozen=True, slots=True)
-class Relaxation:
-    """One assumption given up or taken back. `adaptations` were issued for it; `done` when the last one was."""
-
-    assumption: str
-    cause: Cause | Literal["reinstated"]
-    adaptations: tuple[int, ...] = ()
-    done: bool = False
 
 
 class Planner:
     """Plans for one goal of a domain. Give it perceptions, call `step` as often as there is time.
 
-    `relax` says which assumptions may be relaxed without need: all, those named, or none; with none, failed ones are
-    not relaxed either. `period_ms` replaces the domain's periods of monitors. With `fold` constant arguments become
-    part of a situation's name, else a situation has parameters and several instances at once.
+    `relax` says which assumptions may be relaxed without need: all, those named, or none; with none, failed
+    ones are not relaxed either. `period_ms` replaces the domain's periods of monitors. With `fold` constant
+    arguments become part of a situation's name, else a situation has parameters and several instances at
+    once.
     """
 
     def __init__(
@@ -79,7 +56,7 @@ class Planner:
         domain: Domain,
         *,
         goal: str | None = None,
-        relax: Literal["all", "none"] | tuple[str, ...] = "all",
+        relax: Relax = "all",
         period_ms: int | None = None,
         stub_ms: int = 2000,
         mode: Mode = "drain",
@@ -88,10 +65,7 @@ class Planner:
         patience: int | None = None,
     ) -> None:
         self.domain = domain
-        self.goal = _chosen_goal(domain, goal)
-        self.relax = _checked_relax(domain, relax)
-        self.beliefs = Beliefs(domain)
-        self.relaxations: list[Relaxation] = []
+        self.goal = chosen_goal(domain, goal)
         self.fold = fold
         self.patience = patience
         self._theory = Theory(domain)
@@ -100,10 +74,8 @@ class Planner:
         self.model = Model(root)
         self._root_context = Context((True,) * len(self._root.executability), frozenset(), frozenset({self.goal}))
         self._issuer = Issuer(self.model, fold, stub_ms, period_ms, mode, epoch)
-        self._causes: dict[str, Cause] = {}
-        self._returning: dict[str, None] = {}
+        self._assuming = Assuming(domain, relax)
         self._failures: Counter[str] = Counter()
-        self._returns: Counter[str] = Counter()
         self._agenda = Agenda(self.model)
         self._draft: Draft | None = None
         self._memory = Memory(self._theory)
@@ -115,12 +87,17 @@ class Planner:
     @property
     def assumptions_in_use(self) -> tuple[str, ...]:
         """Those that some issued segment rests on or brings in, the least likely first."""
-        return tuple(sorted(self.model.used(), key=self._unlikelihood))
+        return tuple(sorted(self.model.used(), key=self._assuming.unlikelihood))
 
     @property
     def relaxed(self) -> Mapping[str, Cause]:
         """Assumptions given up, and whether by choice or because they failed."""
-        return MappingProxyType(self._causes)
+        return self._assuming.causes
+
+    @property
+    def relaxations(self) -> tuple[Relaxation, ...]:
+        """Every assumption given up or taken back so far, in order, with the adaptations issued for it."""
+        return tuple(self._assuming.records)
 
     @property
     def expectation(self) -> tuple[str, ...]:
@@ -184,8 +161,8 @@ class Planner:
     def _purpose(self, segment: Segment) -> tuple[str, str]:
         if segment.is_stub:
             return f"refine {segment.name}", ""
-        if self.relaxations and not self.relaxations[-1].done:
-            about = self.relaxations[-1]
+        about = self._assuming.current
+        if about is not None:
             verb = {"normal": "relax", "forced": "give up", "reinstated": "reinstate"}[about.cause]
             return f"{verb} {about.assumption}: {segment.name}", about.assumption
         return f"adapt {segment.name}", ""
@@ -206,7 +183,9 @@ class Planner:
         return self._step("refine", draft)
 
     def _to_refine(self, draft: Draft, refinement: Refinement) -> list[Situation]:
-        """Which new sub-situations must be concrete at once: what comes first; all, if there is a reaction now."""
+        """Which new sub-situations must be concrete at once: what comes first; all, if there is a
+        reaction now.
+        """
         assert refinement.tree is not None
         new = [c.situation for c in refinement.children if c.situation not in self.model.segments]
         if draft.segment.is_stub:
@@ -225,14 +204,14 @@ class Planner:
             self._agenda.set_aside(segment, holder)
             return self._step("refine", draft)
         below = [c.situation for c in segment.children]
-        adaptation = self._issuer.issue(draft, self.beliefs, self._held_back())
+        adaptation = self._issuer.issue(draft, self._assuming.beliefs, self._assuming.watched)
         segment.stale, segment.urgency = False, QUIESCENT
         for stub in self._issuer.introduced:
             self._agenda.push(stub)
         below += [c.situation for c in segment.children]
         self._mark(self.model.renew_contexts(below), QUIESCENT if not draft.assumption else self._urgency(draft))
         self._draft = None
-        self._close_relaxation(adaptation)
+        self._assuming.note(adaptation.id if adaptation else None, done=self._nothing_open)
         if adaptation is None:
             return self._step("refine", draft)
         self._counts["issued"] += 1
@@ -240,17 +219,16 @@ class Planner:
 
     def _give_up(self, draft: Draft, refinement: Refinement) -> Step:
         """There is no plan for a situation: say so, and leave it as it is."""
-        draft.segment.impossible = _why_impossible(refinement, draft.segment.name)
+        draft.segment.impossible = refinement.why_impossible(draft.segment.name)
         draft.segment.stale = False
         self._draft = None
         self._counts["impossible"] += 1
-        self._close_relaxation(None)
+        self._assuming.note(None, done=self._nothing_open)
         return self._step("refine", draft)
 
     def _step(self, kind: StepKind, draft: Draft, *adaptations: Adaptation) -> Step:
-        cause: Cause | Literal["reinstated", ""] = ""
-        if draft.assumption and self.relaxations:
-            cause = self.relaxations[-1].cause
+        about = self._assuming.current or (self._assuming.records[-1] if self._assuming.records else None)
+        cause = about.cause if about is not None and draft.assumption else ""
         return Step(kind, draft.segment.name, draft.assumption, cause, adaptations, draft.purpose)
 
     # ----------------------------------------------------------------------------------------- refinement
@@ -263,7 +241,7 @@ class Planner:
         return self.model.context(situation, draft.refinements.values())
 
     def _refine(self, situation: Situation, context: Context) -> Refinement:
-        theory, beliefs, fold = self._theory, self.beliefs, self.fold
+        theory, beliefs, fold = self._theory, self._assuming.beliefs, self.fold
         schema = self._schema(situation)
         return self._memory.recall(
             situation, context, beliefs, lambda: refine(theory, beliefs, schema, situation, context, fold=fold)
@@ -280,67 +258,51 @@ class Planner:
         for segment in [self._start, *self.model]:
             for atom in segment.refinement.asked if segment.refinement else ():
                 action = observer_of(self.domain, atom)
-                if action is not None and self.beliefs.known(atom) is None:
+                if action is not None and self._assuming.beliefs.known(atom) is None:
                     asked[atom] = action
         if self.model.root not in self.model.segments and not asked:
             return None
-        adaptation = self._issuer.reconcile(self.beliefs, self._held_back(), asked)
+        adaptation = self._issuer.reconcile(self._assuming.beliefs, self._assuming.watched, asked)
         if adaptation is None:
             return None
         self._counts["issued"] += 1
         return Step("watch", adaptations=(adaptation,), purpose=adaptation.purpose)
 
-    def _held_back(self) -> dict[str, int]:
-        """The assumptions that failed and may be reinstated; each time it takes twice as long to believe it."""
-        return {
-            name: 1 << min(self._returns[name], 6)
-            for name, cause in self._causes.items()
-            if cause == "forced" and self.beliefs.assumption(name).reinstatable
-        }
-
     def _reinstate(self) -> Step | None:
         """Take back an assumption that holds again, once nothing else is under way."""
-        if not self._returning or self._issuer.under_way or not self._nothing_open:
+        if self._issuer.under_way or not self._nothing_open:
             return None
-        name = next(iter(self._returning))
-        del self._returning[name]
-        self._causes.pop(name, None)
-        self.beliefs = self.beliefs.reinstated(name)
+        name = self._assuming.take_back()
+        if name is None:
+            return None
         self._counts["reinstated"] += 1
-        self._returns[name] += 1
-        self.relaxations.append(Relaxation(name, "reinstated"))
         self._start.impossible = ""
         self._mark([segment for segment in self.model if segment.impossible], QUIESCENT)
         self._mark_outdated(QUIESCENT)
-        self._close_relaxation(None)
+        self._assuming.note(None, done=self._nothing_open)
         return Step("reinstate", assumption=name, cause="reinstated", purpose=f"reinstate {name}")
 
     def _relax_next(self) -> Step | None:
         """The reactor is ω-ideal: relax the assumption in use that is least likely to hold."""
-        if self.relax == "none" or not self._nothing_open or self.model.root not in self.model.segments:
+        if not self._nothing_open or self.model.root not in self.model.segments:
             return None
-        names = [n for n in self.assumptions_in_use if n not in self.beliefs.relaxed and self._may_relax(n)]
-        if not names:
+        name = self._assuming.least_likely(self.model.used())
+        if name is None:
             return None
-        self._relax(names[0], "normal", QUIESCENT)
-        return Step("relax", assumption=names[0], cause="normal", purpose=f"relax {names[0]}")
-
-    def _may_relax(self, name: str) -> bool:
-        return self.relax == "all" or name in self.relax or name.partition("(")[0] in self.relax
+        self._relax(name, "normal", QUIESCENT)
+        return Step("relax", assumption=name, cause="normal", purpose=f"relax {name}")
 
     def _relax(self, name: str, cause: Cause, urgency: int) -> None:
         """Plan without an assumption from now on."""
         self._counts[cause] += 1
-        self._causes[name] = cause
-        self.beliefs = self.beliefs.without(name)
-        self.relaxations.append(Relaxation(name, cause))
+        self._assuming.give_up(name, cause)
         self._draft = None
         self._mark_outdated(urgency)
-        self._close_relaxation(None)
+        self._assuming.note(None, done=self._nothing_open)
 
     def _mark_outdated(self, urgency: int) -> None:
         """Everything has to be planned again that rests on what is relaxed now, or missed what is not."""
-        relaxed = self.beliefs.relaxed
+        relaxed = self._assuming.beliefs.relaxed
         outdated = [s for s in self.model if s.refinement and not s.refinement.serves(relaxed)]
         self._mark(outdated, urgency)
 
@@ -353,20 +315,7 @@ class Planner:
             self._agenda.push(segment)
 
     def _urgency(self, draft: Draft) -> int:
-        return FAILED_ASSUMPTION if self._causes.get(draft.assumption) == "forced" else QUIESCENT
-
-    def _close_relaxation(self, adaptation: Adaptation | None) -> None:
-        """Keep the record of the relaxation under way; it is done when nothing open is left."""
-        if not self.relaxations or self.relaxations[-1].done:
-            return
-        record = self.relaxations[-1]
-        if adaptation is not None:
-            record = replace(record, adaptations=(*record.adaptations, adaptation.id))
-        self.relaxations[-1] = replace(record, done=self._nothing_open)
-
-    def _unlikelihood(self, name: str) -> tuple[float, int, str]:
-        declared = self.beliefs.assumption(name)
-        return declared.likelihood, list(self.domain.assumptions).index(declared.name), name
+        return FAILED_ASSUMPTION if self.relaxed.get(draft.assumption) == "forced" else QUIESCENT
 
     # ---------------------------------------------------------------------------------------- perceptions
 
@@ -388,7 +337,7 @@ class Planner:
             case "assumption_failure":
                 self._assumption_failed(perception.subject)
             case "assumption_holds":
-                self._assumption_holds(perception.subject)
+                self._assuming.holds_again(perception.subject)
             case "information":
                 self._told(perception)
             case "guard_kill" | "error":
@@ -426,21 +375,15 @@ class Planner:
         self._raise(name, FAILED_SITUATION)
         self._failures[name] += 1
         segment = self.model.named(name)
-        if self.patience and segment and self._failures[name] >= self.patience and self.relax != "none":
+        if self.patience and segment and self._failures[name] >= self.patience:
             self._failures[name] = 0
-            doubtful = sorted(segment.required - self.beliefs.relaxed, key=self._unlikelihood)
-            if doubtful and not segment.stale:
-                self._relax(doubtful[0], "forced", FAILED_ASSUMPTION)
+            doubtful = self._assuming.least_likely(segment.required)
+            if doubtful is not None and not segment.stale:
+                self._relax(doubtful, "forced", FAILED_ASSUMPTION)
 
     def _assumption_failed(self, name: str) -> None:
-        self._returning.pop(name, None)
-        known = name.partition("(")[0] in self.domain.assumptions
-        if known and self.relax != "none" and name not in self.beliefs.relaxed:
+        if self._assuming.fails(name):
             self._relax(name, "forced", FAILED_ASSUMPTION)
-
-    def _assumption_holds(self, name: str) -> None:
-        if name in self._held_back():
-            self._returning[name] = None
 
     def _told(self, perception: Perception) -> None:
         """An answer to a perception request: plan again what asked for it."""
@@ -448,40 +391,9 @@ class Planner:
         atom = Atom(perception.subject, tuple(arguments))
         if verdict not in ("holds", "fails"):
             return
-        self.beliefs = self.beliefs.learning(atom, holds=verdict == "holds")
+        self._assuming.beliefs = self._assuming.beliefs.learning(atom, holds=verdict == "holds")
         self._issuer.requests.pop(atom, None)
         self._draft = None
         self._start.impossible = ""
         asked = [s for s in self.model if s.impossible or (s.refinement and atom in s.refinement.asked)]
         self._mark(asked, QUIESCENT)
-
-
-def _why_impossible(refinement: Refinement, name: str) -> str:
-    reasons = []
-    if refinement.asked:
-        reasons.append("not known: " + ", ".join(map(str, refinement.asked)))
-    if refinement.missing:
-        reasons.append("not without " + " or ".join(sorted(refinement.missing)))
-    return f"no plan achieves {name}" + (f" ({'; '.join(reasons)})" if reasons else "")
-
-
-def _chosen_goal(domain: Domain, goal: str | None) -> str:
-    if goal is None and domain.goals:
-        return next(iter(domain.goals))
-    if goal not in domain.goals:
-        hint = nearest(goal or "", domain.goals) or f"the domain has {', '.join(domain.goals) or 'no goal'}"
-        raise InputError(f"{domain.file}: no goal {goal or ''}, {hint}")
-    return goal
-
-
-def _checked_relax(
-    domain: Domain, relax: Literal["all", "none"] | tuple[str, ...]
-) -> Literal["all", "none"] | tuple[str, ...]:
-    if isinstance(relax, tuple):
-        for name in relax:
-            if name.partition("(")[0] not in domain.assumptions:
-                hint = nearest(name, domain.assumptions) or f"known: {', '.join(domain.assumptions)}"
-                raise InputError(f"{name} is not an assumption of {domain.file}, {hint}")
-    return relax
-
-

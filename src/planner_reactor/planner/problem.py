@@ -33,11 +33,12 @@ class Goal:
 class Problem:
     """From `truths` to `goals`, whose variables count from 0 up to `variables`.
 
-    `forbidden` abstract schemas may not be used (they stand higher in the hierarchy), nor may `barred` calls (schema
-    and arguments). `outputs` are terms that must end up as something that can be named. `replayed` is None if what is
-    planned is never done again after it succeeded, else it holds the parameters that are then the same again. The last
-    `kept` goals are things that held at the start and need only not be ended. With `enduring` the goals are those of
-    the whole: what was achieved counts, whether or not assumptions make it last.
+    `forbidden` abstract schemas may not be used (they stand higher in the hierarchy), nor may `barred`
+    calls (schema and arguments). `outputs` are terms that must end up as something that can be named.
+    `replayed` is None if what is planned is never done again after it succeeded, else it holds the
+    parameters that are then the same again. The last `kept` goals are things that held at the start and
+    need only not be ended. With `enduring` the goals are those of the whole: what was achieved counts,
+    whether or not assumptions make it last.
     """
 
     theory: Theory
@@ -58,8 +59,12 @@ class Problem:
 
 @dataclass(slots=True)
 class Consulted:
-    """What a search would have needed: relaxed assumptions, unknown conditions, schemas that stand too high."""
+    """What a search would have needed: relaxed assumptions, unknown conditions, schemas that stand too high.
+
+    `gave_up`: it ended before everything was tried.
+    """
 
     missing: set[str] = field(default_factory=set)
     asked: dict[Atom, None] = field(default_factory=dict)
     blocked: set[str] = field(default_factory=set)
+    gave_up: bool = False

@@ -1,8 +1,8 @@
 """What can be reached at all, and how many actions it costs at least: bounds for the search.
 
-Nothing that is brought about is taken to be undone, and arguments are not looked at, so a bound never exceeds the
-truth; NEVER means that no plan exists. Where a relaxed assumption would have made a bound lower, it is noted as
-missing: if it is reinstated, another plan may win.
+Nothing that is brought about is taken to be undone, and arguments are not looked at, so a bound never
+exceeds the truth; NEVER means that no plan exists. Where a relaxed assumption would have made a bound
+lower, it is noted as missing: if it is reinstated, another plan may win.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 from typing import TypeAlias
 
 from planner_reactor.logic.domain import Rule
+from planner_reactor.logic.formulas import Atom
 from planner_reactor.planner.problem import Consulted, Problem
 from planner_reactor.planner.theory import Theory
 
@@ -21,7 +22,9 @@ _Bounds: TypeAlias = dict[str, int]
 
 @dataclass(slots=True)
 class Reach:
-    """Lower bounds for one problem; they are shared by all problems that have the same predicates to begin with."""
+    """Lower bounds for one problem; they are shared by all problems that have the same predicates to
+    begin with.
+    """
 
     problem: Problem
     consulted: Consulted
@@ -44,7 +47,9 @@ class Reach:
         return found
 
     def least_together(self, predicates: Iterable[str]) -> int:
-        """At least so many actions bring about all of these: those count that no action can help to two of."""
+        """At least so many actions bring about all of these: those count that no action can help
+        to two of.
+        """
         contributors = self.problem.theory.contributors
         total = largest = 0
         counted: set[str] = set()
@@ -62,9 +67,8 @@ def _missing(theory: Theory, relaxed: frozenset[str], predicate: str) -> frozens
     key = (predicate, relaxed)
     found = theory.missing.get(key)
     if found is None:
-        found = theory.missing[key] = frozenset(theory.assumptions_behind(predicate) & relaxed) | frozenset(
-            name for name in relaxed if name.partition("(")[0] in theory.assumptions_behind(predicate)
-        )
+        behind = theory.assumptions_behind(predicate)
+        found = theory.missing[key] = frozenset(n for n in relaxed if n.partition("(")[0] in behind)
     return found
 
 
@@ -79,32 +83,36 @@ def _bounds(theory: Theory, given: frozenset[str], forbidden: frozenset[str], re
 
 
 def _fixpoint(theory: Theory, given: frozenset[str], forbidden: frozenset[str], relaxed: frozenset[str]) -> _Bounds:
-    def holds(assumed: Iterable[str]) -> bool:
-        return not relaxed.intersection(assumed)
-
     bounds = dict.fromkeys(given, 0)
-    rules = [r for r in theory.domain.rules if holds(a.predicate for a in r.assumptions)]
-    actions = [
+    rules = [rule for rule in theory.domain.rules if _holds(rule.assumptions, relaxed)]
+    waiting = [
         schema
         for schema in theory.domain.schemas.values()
-        if schema.name not in forbidden
-        and not schema.cleanup
-        and holds(a.predicate for a in theory.assumed(schema))
+        if not (schema.name in forbidden or schema.cleanup) and _holds(theory.assumed(schema), relaxed)
     ]
     changed = True
     while changed:
         changed = False
         for rule in rules:
-            changed |= _lower(bounds, rule.head.predicate, _cost(theory, rule, bounds))
-        for schema in actions:
-            if all(c.atom.predicate in bounds for c in schema.executability):
-                for effect in schema.effects:
-                    changed |= _lower(bounds, effect.atom.predicate, 1)
+            if theory.body(rule) <= bounds.keys():
+                changed |= _lower(bounds, rule.head.predicate, _cost(theory, rule, bounds))
+        still = []
+        for schema in waiting:
+            if theory.needs[schema.name] <= bounds.keys():
+                for predicate in theory.effects[schema.name]:
+                    changed |= _lower(bounds, predicate, 1)
+            else:
+                still.append(schema)
+        waiting = still
     return bounds
 
 
+def _holds(assumptions: Iterable[Atom], relaxed: frozenset[str]) -> bool:
+    return not relaxed or not any(a.predicate in relaxed for a in assumptions)
+
+
 def _cost(theory: Theory, rule: Rule, bounds: _Bounds) -> int:
-    return sum(max(bounds.get(c.atom.predicate, NEVER) for c in group) for group in theory.groups(rule))
+    return sum(max(bounds[c.atom.predicate] for c in group) for group in theory.groups(rule))
 
 
 def _lower(bounds: _Bounds, predicate: str, cost: int) -> bool:
@@ -112,4 +120,3 @@ def _lower(bounds: _Bounds, predicate: str, cost: int) -> bool:
         return False
     bounds[predicate] = cost
     return True
-

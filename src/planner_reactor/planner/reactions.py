@@ -2,20 +2,20 @@
 
     SIT[s]<k, x1, …> :; (~(body : SUCCEED[s, k]) : FAIL[s, k])
 
-Results go back by `(UPDATE[s, k, x] ; SUCCEED[s, k])`; sub-situations are asserted until they succeed; what cleans up
-after a failure stands before FAIL. A situation that is not refined yet has a stub. Where several instances of a
-situation may be on at once its loop is `::`, so that each is served. Names: `k` is the instance, `x1` to `xn` the
+Results go back by `(UPDATE[s, k, x] ; SUCCEED[s, k])`; sub-situations are asserted until they succeed.
+Where something must be cleaned up if the rest of the body fails, the rest stands in `if rest then … else
+(cleanup ; ABORT)`. A situation that is not refined yet has a stub. Where several instances of a situation
+may be on at once its loop is `::`, so that each is served. Names: `k` is the instance, `x1` to `xn` the
 arguments that are no constants, then the results in the order of the text.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
 
 from planner_reactor.logic.formulas import Numeral, Term
 from planner_reactor.planner.plan import Parameter, Result
-from planner_reactor.planner.refinement import Refinement, Situation, situation_of
+from planner_reactor.planner.situations import Refinement, Situation, situation_of
 from planner_reactor.planner.structure import (
     Action,
     Choice,
@@ -28,6 +28,7 @@ from planner_reactor.planner.structure import (
 )
 from planner_reactor.rs.printer import show
 from planner_reactor.rs.terms import (
+    ABORT,
     STOP,
     All,
     Call,
@@ -56,7 +57,9 @@ _NAME = re.compile(r"[A-Za-z_]\w*")
 
 
 class Names:
-    """A name of its own for every situation: the action's, followed by its constants (`Lacks`, `a` → `LacksA`)."""
+    """A name of its own for every situation: the action's, followed by its constants (`Lacks`, `a` →
+    `LacksA`).
+    """
 
     def __init__(self) -> None:
         self._names: dict[Situation, str] = {}
@@ -84,7 +87,9 @@ def reaction(refinement: Refinement, names: Names, *, fold: bool) -> Process:
 
 
 def stub(situation: Situation, names: Names, period_ms: int) -> Process:
-    """The reaction of a situation that is not refined yet: it tells the planner, waits and fails (P4 of R §8.3)."""
+    """The reaction of a situation that is not refined yet: it tells the planner, waits and fails (P4
+    of R §8.3).
+    """
     name = Symbol(names[situation])
     parameters = [f"x{n + 1}" for n in range(situation.arguments.count(None))]
     waiting = Cond((Call("STUB", (name,)), Call("SUSPEND", (Number(period_ms),))))
@@ -136,16 +141,15 @@ class _Writing:
         if refinement.outputs[0]:
             outputs = tuple(self._expression(term) for term in refinement.outputs[0])
             success = Seq((Call("UPDATE", (name, instance, *outputs)), success))
-        failure: Process = Call("FAIL", (name, instance))
-        if refinement.cleanup:
-            failure = Seq((*(self._call(action) for action in refinement.cleanup), failure))
-        body = Cond((Not(cond(*self._parts(tree), success)), failure))
+        body = Cond((Not(self._body(tree, success)), Call("FAIL", (name, instance))))
         head = Call("SIT", (name,), (INSTANCE, *self._parameters))
         several = None in refinement.situation.arguments and not self._fold
         return Spawn(head, body) if several else Loop(head, body)
 
     def _name_results(self, tree: Tree) -> None:
-        """Number the results in the order of the text; an output has one name, whichever branch it comes from."""
+        """Number the results in the order of the text; an output has one name, whichever branch it
+        comes from.
+        """
         same: dict[Term, Term] = {}
         for outputs in self._refinement.outputs[1:]:
             for first, other in zip(self._refinement.outputs[0], outputs, strict=True):
@@ -157,11 +161,23 @@ class _Writing:
                 name = self._variables.setdefault(leader, f"x{len(set(self._variables.values())) + 1}")
                 self._variables[result] = name
 
-    def _parts(self, tree: Tree) -> Iterator[Process]:
-        if isinstance(tree, InOrder):
-            yield from (self._process(part) for part in tree.parts)
-        else:
-            yield self._process(tree)
+    def _body(self, tree: Tree, success: Process) -> Process:
+        """The composition, then `success`; from what upsets something on, a failure is cleaned up after."""
+        parts = list(tree.parts) if isinstance(tree, InOrder) else [tree]
+        upsets = self._refinement.upsets
+        at = next((n for n, part in enumerate(parts) if not upsets.isdisjoint(actions_of(part))), len(parts))
+        if at < len(parts):
+            part = parts[at]
+            if isinstance(part, Choice) and at == len(parts) - 1 and part.test not in upsets:
+                then, otherwise = self._body(part.then, success), self._body(part.otherwise, success)
+                return cond(*map(self._process, parts[:at]), If(self._call(part.test), then, otherwise))
+            if isinstance(part, Run) and not part.action.abstract:
+                at += 1  # it did what it had to, so only the rest can fail
+        if at == len(parts):
+            return cond(*map(self._process, parts), success)
+        cleanup = Seq((*(self._call(action) for action in self._refinement.cleanup), ABORT))
+        rest = If(cond(*map(self._process, parts[at:])), success, cleanup)
+        return cond(*map(self._process, parts[:at]), rest)
 
     def _process(self, tree: Tree) -> Process:
         match tree:

@@ -1,23 +1,25 @@
-"""One situation made concrete: from an abstract action and what its callers grant to a composition of actions.
+"""One situation made concrete: from an abstract action and what its callers grant to a composition of
+actions.
 
-`refine` searches for a plan of the action's expansions, plans what to do when a test fails whose failure says
-something (`otherwise`), finds the cleanup for a failure half-way, and works out what each sub-situation may count on.
-It depends on nothing but its arguments: the same situation, context and beliefs always give the same refinement, so
-that planning in increments and planning anew agree.
+`refine` searches for a plan of the action's expansions, plans what to do when a test fails whose failure
+says something (`otherwise`), finds the cleanup for a failure half-way, and works out what each
+sub-situation may count on. It depends on nothing but its arguments: the same situation, context and beliefs
+always give the same refinement, so that planning in increments and planning anew agree.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 
-from planner_reactor.logic.domain import ActionSchema, Condition
-from planner_reactor.logic.formulas import Atom, Numeral, Term, variables
+from planner_reactor.logic.domain import ActionSchema
+from planner_reactor.logic.formulas import Atom, Numeral, Term, filled, variables
 from planner_reactor.planner.beliefs import Beliefs
 from planner_reactor.planner.plan import END, START, Link, Parameter, Plan, Step
 from planner_reactor.planner.problem import Consulted, Problem, Truth
 from planner_reactor.planner.search import Search
-from planner_reactor.planner.structure import Action, Tree, action_of, arrange, needed_before, renamed
+from planner_reactor.planner.situations import Child, Context, Refinement, Situation, situation_of
+from planner_reactor.planner.structure import Action, Tree, action_of, arrange, needed_before
 from planner_reactor.planner.theory import Theory
 from planner_reactor.planner.threats import Threats
 
@@ -25,90 +27,12 @@ NESTED_TESTS = 3
 """How many tests may stand in each other's else-branches."""
 
 
-@dataclass(frozen=True, slots=True)
-class Situation:
-    """An abstract action as a situation: constants are part of it, None stands for what it is asserted with."""
-
-    schema: str
-    arguments: tuple[Term | None, ...] = ()
-
-    def renamed(self, constants: Mapping[Term, Term]) -> Situation:
-        """The same situation of other constants."""
-        return Situation(self.schema, tuple(a if a is None else constants.get(a, a) for a in self.arguments))
-
-
-@dataclass(frozen=True, slots=True)
-class Context:
-    """What a situation may count on, whoever asserts it.
-
-    `granted` tells for each executability condition whether it lasts while the situation does. `replayed` is None if
-    the situation is never asserted again after it succeeded, else the inputs that are then the same. `forbidden` are
-    the abstract actions above it.
-    """
-
-    granted: tuple[bool, ...] = ()
-    replayed: frozenset[int] | None = None
-    forbidden: frozenset[str] = frozenset()
-
-
-@dataclass(frozen=True, slots=True)
-class Child:
-    """A sub-situation as one call uses it."""
-
-    situation: Situation
-    arguments: tuple[Term, ...]
-    granted: tuple[bool, ...]
-    replayed: frozenset[int] | None
-
-    def renamed(self, constants: Mapping[Term, Term]) -> Child:
-        arguments = tuple(constants.get(a, a) for a in self.arguments)
-        return Child(self.situation.renamed(constants), arguments, self.granted, self.replayed)
-
-
-@dataclass(frozen=True, slots=True)
-class Refinement:
-    """How a situation is made concrete; `tree` is None if no plan was found.
-
-    `required` are the assumptions that it rests on, `presumed` those that it only brings in, `missing` relaxed ones
-    that were looked for, `asked` conditions that nobody knows, `blocked` actions that stand too high to be used.
-    """
-
-    situation: Situation
-    tree: Tree | None
-    outputs: tuple[tuple[Term, ...], ...] = ()
-    children: tuple[Child, ...] = ()
-    cleanup: tuple[Action, ...] = ()
-    required: frozenset[str] = frozenset()
-    presumed: frozenset[str] = frozenset()
-    missing: frozenset[str] = frozenset()
-    asked: tuple[Atom, ...] = ()
-    blocked: frozenset[str] = frozenset()
-    warnings: tuple[str, ...] = ()
-
-
-    def serves(self, relaxed: frozenset[str]) -> bool:
-        """Would it be the same with these assumptions relaxed?"""
-        return not (self.required | self.presumed) & relaxed and self.missing <= relaxed
-
-    def renamed(self, constants: Mapping[Term, Term]) -> Refinement:
-        """The same refinement for constants that the domain does not tell apart."""
-        return replace(
-            self,
-            situation=self.situation.renamed(constants),
-            tree=None if self.tree is None else renamed(self.tree, constants),
-            outputs=tuple(tuple(constants.get(t, t) for t in terms) for terms in self.outputs),
-            children=tuple(child.renamed(constants) for child in self.children),
-            cleanup=tuple(action.renamed(constants) for action in self.cleanup),
-            asked=tuple(
-                Atom(atom.predicate, tuple(constants.get(a, a) for a in atom.arguments)) for atom in self.asked
-            ),
-        )
-
-
 def refine(
     theory: Theory, beliefs: Beliefs, schema: ActionSchema, situation: Situation, context: Context, *, fold: bool
 ) -> Refinement:
-    """The refinement of a situation of this abstract action. Without `fold` sub-situations keep their constants."""
+    """The refinement of a situation of this abstract action. Without `fold` sub-situations keep their
+    constants.
+    """
     return _Refining(theory, beliefs, schema, situation, context, fold).run()
 
 
@@ -126,6 +50,7 @@ class _Refining:
     children: dict[Action, Child] = field(default_factory=dict)
     outputs: list[tuple[Term, ...]] = field(default_factory=list)
     cleanup: dict[Action, None] = field(default_factory=dict)
+    upsets: set[Action] = field(default_factory=set)
     warnings: list[str] = field(default_factory=list)
     numbered: int = 0  # steps of all plans so far
 
@@ -138,12 +63,14 @@ class _Refining:
             tuple(self.outputs),
             tuple(self.children.values()),
             tuple(self.cleanup),
+            frozenset(self.upsets),
             frozenset(self.required),
             frozenset(self.presumed - self.required),
             frozenset(self.consulted.missing),
             tuple(self.consulted.asked),
             frozenset(self.consulted.blocked),
-            tuple(self.warnings),
+            tuple(dict.fromkeys(self.warnings)),
+            self.consulted.gave_up,
         )
 
     # ------------------------------------------------------------------------------------- the problem
@@ -152,17 +79,15 @@ class _Refining:
         schema = self.schema
         given = {
             variable: Parameter(n) if constant is None else constant
-            for n, (variable, constant) in enumerate(
-                zip(schema.inputs, self.situation.arguments, strict=True)
-            )
+            for n, (variable, constant) in enumerate(zip(schema.inputs, self.situation.arguments, strict=True))
         }
-        conditions = [_filled(condition.atom, given) for condition in schema.executability]
+        conditions = [filled(condition.atom, given) for condition in schema.executability]
         truths = [
             Truth(atom, not lasts)
             for atom, lasts in zip(conditions, self.context.granted, strict=True)
             if not list(variables((atom,)))
         ]
-        goals = [_filled(atom, given) for atom in schema.expansions]
+        goals = [filled(atom, given) for atom in schema.expansions]
         problem = Problem(
             self.theory,
             self.beliefs,
@@ -265,9 +190,7 @@ class _Refining:
             if isinstance(argument, Parameter) and (fails or (again is not None and argument.number in again))
         )
         replayed = None if again is None and not fails else same
-        self.children[action] = Child(
-            situation_of(action, fold=self.fold), action.arguments, granted, replayed
-        )
+        self.children[action] = Child(situation_of(action, fold=self.fold), action.arguments, granted, replayed)
 
     # -------------------------------------------------------------------------------- failing half-way
 
@@ -278,6 +201,7 @@ class _Refining:
             if not truth.lost and threats.ends(step, truth.atom):
                 for action in self._cleanups(plan, step, truth.atom):
                     self.cleanup.setdefault(action)
+                    self.upsets.add(action_of(plan, step.number))
 
     def _cleanups(self, plan: Plan, step: Step, atom: Atom) -> Iterator[Action]:
         for schema, effect in self.theory.domain.producers.get(atom.predicate, ()):
@@ -303,12 +227,6 @@ class _Refining:
         return plan.arguments(cleaning)
 
 
-def situation_of(action: Action, *, fold: bool) -> Situation:
-    """The situation that an abstract action asserts; with `fold` constants become part of it."""
-    constants = tuple(a if fold and isinstance(a, str | Numeral) else None for a in action.arguments)
-    return Situation(action.name, constants)
-
-
 def _after_failure(problem: Problem, plan: Plan, test: Step) -> Problem:
     """What is to be planned if the test aborts: the same goals, from what holds then."""
     threats = Threats(problem, plan)
@@ -332,50 +250,3 @@ def _has_achiever(plan: Plan, test: Step) -> bool:
     return not test.schema.executability or any(
         link.consumer == test.number and link.producer not in (START, END) for link in plan.links
     )
-
-
-def _filled(atom: Atom, given: dict[int, Term]) -> Atom:
-    return Atom(atom.predicate, tuple(given.get(a, a) if type(a) is int else a for a in atom.arguments))
-
-
-def root_schema(theory: Theory, goal_name: str) -> ActionSchema:
-    """The goal as an abstract action without parameters: from the facts that may change to what is wanted (R (13)).
-
-    If facts say for which things the antecedent holds, the goal is meant for each of them, else for whatever an
-    action brings.
-    """
-    goal = theory.domain.goals[goal_name]
-    cases = list(_known_cases(theory, goal.antecedent))
-    wanted: Iterable[Atom]
-    if cases and goal.antecedent:
-        wanted = dict.fromkeys(_filled(atom, case) for case in cases for atom in goal.consequent)
-    else:
-        wanted = (*goal.antecedent, *goal.consequent)
-    names = tuple(f"x{n}" for n in range(goal.size))
-    facts = [fact for predicate in theory.domain.facts if predicate in theory.changing
-             for fact in theory.domain.facts[predicate]]  # fmt: skip
-    return ActionSchema(
-        goal.name,
-        names,
-        executability=tuple(Condition(fact) for fact in facts),
-        expansions=tuple(wanted),
-        place=goal.place,
-    )
-
-
-def _known_cases(theory: Theory, atoms: tuple[Atom, ...]) -> Iterator[dict[int, Term]]:
-    """The ways in which lasting facts satisfy the atoms."""
-    cases: list[dict[int, Term]] = [{}]
-    for atom in atoms:
-        facts = theory.domain.facts.get(atom.predicate, ()) if atom.predicate not in theory.changing else ()
-        found = []
-        for case in cases:
-            for fact in facts:
-                extended = dict(case)
-                if all(
-                    extended.setdefault(a, b) == b if type(a) is int else a == b
-                    for a, b in zip(atom.arguments, fact.arguments, strict=True)
-                ):
-                    found.append(extended)
-        cases = found
-    yield from cases

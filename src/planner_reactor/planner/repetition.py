@@ -1,8 +1,8 @@
 """Part of a plan done again for other constants.
 
-Conditions that are alike but for constants that the domain does not tell apart have plans that are alike: the search
-solves the first group of them and repeats its part of the plan for the others, so that a hundred cost little more than
-one.
+Conditions that are alike but for constants that the domain does not tell apart have plans that are alike:
+the search solves the first group of them and repeats its part of the plan for the others, so that a hundred
+cost little more than one.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from planner_reactor.logic.formulas import Atom, Term, variables
+from planner_reactor.planner.beliefs import Beliefs, told_apart
 from planner_reactor.planner.plan import Plan, Result, Step, Unnamed
 from planner_reactor.planner.problem import Goal
 from planner_reactor.planner.theory import Theory
@@ -27,15 +28,16 @@ class Part:
     stop: int
 
 
-def pattern(theory: Theory, plan: Plan, goals: Sequence[Goal]) -> object:
+def pattern(theory: Theory, beliefs: Beliefs, plan: Plan, goals: Sequence[Goal]) -> object:
     """What two groups have in common if the plan of one serves for the other."""
+    apart = told_apart(beliefs.relaxed)
     atoms = tuple(plan.bindings.ground(goal.atom) for goal in goals)
     numbers: dict[Term, int] = {variable: n for n, variable in enumerate(variables(atoms))}
     found = []
     for goal, atom in zip(goals, atoms, strict=True):
-        terms = []
+        terms: list[tuple[object, object]] = []
         for argument in atom.arguments:
-            kind = theory.alike.get(argument) if isinstance(argument, str) else None
+            kind = theory.alike.get(argument) if isinstance(argument, str) and argument not in apart else None
             if kind is not None:
                 terms.append((kind, numbers.setdefault(argument, len(numbers))))
             else:
@@ -45,7 +47,9 @@ def pattern(theory: Theory, plan: Plan, goals: Sequence[Goal]) -> object:
 
 
 def repeat(plan: Plan, part: Part, goals: Sequence[Goal]) -> bool:
-    """Do the part again for these goals, which have the same pattern; False (and nothing done) if it is entangled."""
+    """Do the part again for these goals, which have the same pattern; False (and nothing done) if it
+    is entangled.
+    """
     steps, links = plan.steps[part.first : part.last], plan.links[part.start : part.stop]
     own = {step.number for step in steps}
     shift = len(plan.steps) - part.first
@@ -107,4 +111,3 @@ class _Mapping:
                 value, open_ = self(walk(a)), walk(b)
                 if type(open_) is int and type(value) is not int:
                     self._plan.bindings.bind(open_, value)
-

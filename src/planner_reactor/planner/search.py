@@ -1,8 +1,9 @@
-"""The search for the partial plan with the fewest steps: iterative deepening over the ways to support conditions.
+"""The search for the partial plan with the fewest steps: iterative deepening over the ways to support
+conditions.
 
-Conditions of a rule that share no variable are planned apart, each with the fewest steps, so that the cost of a
-hundred independent ones is the sum and not the product; what a group was found to cost is remembered. Ties go to what
-`supports` tries first. A search that is not done after `NODES` choices gives up.
+Conditions of a rule that share no variable are planned apart, each with the fewest steps, so that the cost
+of a hundred independent ones is the sum and not the product; what a group was found to cost is remembered.
+Ties go to what `supports` tries first. A search that is not done after `NODES` choices gives up.
 """
 
 from __future__ import annotations
@@ -30,7 +31,9 @@ _Choice: TypeAlias = tuple[tuple[int, ...], Agenda, Iterator[Way]]
 
 @dataclass(slots=True)
 class Search:
-    """One search. `solve` once; `consulted` then tells what it would have needed beside what the plan uses."""
+    """One search. `solve` once; `consulted` then tells what it would have needed beside what the plan
+    uses.
+    """
 
     problem: Problem
     plan: Plan = field(default_factory=Plan)
@@ -98,6 +101,7 @@ class Search:
         for way in ways:
             self.nodes += 1
             if self.nodes > NODES:
+                self.consulted.gave_up = True
                 break
             added = way()
             if added is not None:
@@ -129,7 +133,7 @@ class Search:
         plan = self.plan
         solved: dict[object, Part] = {}
         for group in groups:
-            key = pattern(self.problem.theory, plan, group)
+            key = pattern(self.problem.theory, self.problem.beliefs, plan, group)
             mark = plan.mark()
             if key in solved:
                 if repeat(plan, solved[key], group):

@@ -1,9 +1,9 @@
 """From a partial order of steps to a composition of processes (R §7.2).
 
-What must end before the other starts is composed in sequence, what nothing orders side by side, what must last
-through another goes beside it and ends with it. A test whose failure is planned for comes as early as it can, and all
-that is not needed before it stands in its branch. An order that no nesting of these expresses is made stricter:
-first what waits for nothing, then the rest.
+What must end before the other starts is composed in sequence, what nothing orders side by side, what must
+last through another goes beside it and ends with it. A test whose failure is planned for comes as early as
+it can, and all that is not needed before it stands in its branch. An order that no nesting of these
+expresses is made stricter: first what waits for nothing, then the rest.
 """
 
 from __future__ import annotations

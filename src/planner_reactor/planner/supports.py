@@ -1,9 +1,9 @@
 """The ways to support one open condition (R §7.4): chaining from effects to conditions.
 
-In the order in which they are tried: what holds at the start, the effects of steps that are there already, new
-abstract actions, rules, new basic actions. (What must hold at the end looks to the steps first.) A way, when called,
-extends the plan and gives the new conditions that it raises, or None if it is not possible after all; the caller
-undoes what it left.
+In the order in which they are tried: what holds at the start, the effects of steps that are there already,
+new abstract actions, rules, new basic actions. (What must hold at the end looks to the steps first.) A way,
+when called, extends the plan and gives the new conditions that it raises, or None if it is not possible
+after all; the caller undoes what it left.
 """
 
 from __future__ import annotations
@@ -65,7 +65,12 @@ class Supports:
                 yield partial(self._by_fact, goal, told)
 
     def _by_fact(self, goal: Goal, fact: Atom) -> list[Goal] | None:
-        return [] if self.plan.bindings.unify(goal.atom.arguments, fact.arguments) else None
+        lasting = self.problem.beliefs.lasting(fact)
+        self.consulted.missing |= lasting.missing
+        if not lasting.holds or not self.plan.bindings.unify(goal.atom.arguments, fact.arguments):
+            return None
+        self.plan.uses.extend(Use(name, True) for name in sorted(lasting.used))
+        return []
 
     def _by_truth(self, goal: Goal, truth: Truth) -> list[Goal] | None:
         if not self.plan.bindings.unify(goal.atom.arguments, truth.atom.arguments):
@@ -221,5 +226,3 @@ def _may_match(schema: ActionSchema, effect: Effect, atom: Atom) -> bool:
         elif seen.setdefault(own, wanted) != wanted and not free:
             return False
     return True
-
-

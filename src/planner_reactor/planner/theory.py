@@ -1,7 +1,9 @@
 """What can be said of a domain once and for all, to make chaining fast (nothing here depends on a state).
 
-`ends` are the predicates that an action may put an end to, by the exclusions of the causal theory; `groups` the parts
-of a rule's body that share no variable; `contributors` the actions that can help to bring a predicate about; `alike` the constants that a domain treats all in the same way, so that what is planned for one serves for another.
+`ends` are the predicates that an action may put an end to, by the exclusions of the causal theory; `groups`
+the parts of a rule's body that share no variable; `contributors` the actions that can help to bring a
+predicate about; `alike` the constants that a domain treats all in the same way, so that what is planned for
+one serves for another.
 """
 
 from __future__ import annotations
@@ -22,6 +24,7 @@ class Theory:
     def __init__(self, domain: Domain) -> None:
         self.domain = domain
         self.effects = {s.name: frozenset(e.atom.predicate for e in s.effects) for s in domain.schemas.values()}
+        self.needs = {s.name: frozenset(c.atom.predicate for c in s.executability) for s in domain.schemas.values()}
         self.ends = {s.name: self._ended_by(s) for s in domain.schemas.values()}
         self.achievable = frozenset().union(*self.effects.values())
         self.changing = frozenset().union(*self.ends.values())
@@ -32,6 +35,7 @@ class Theory:
         self.contributors = _contributors(domain)
         self.bounds: dict[object, dict[str, int]] = {}
         self._groups: dict[int, tuple[tuple[Condition, ...], ...]] = {}
+        self._bodies = {id(r): frozenset(c.atom.predicate for c in r.body) for r in domain.rules}
         self.alike = _alike(domain, self.groups)
         self.missing: dict[tuple[str, frozenset[str]], frozenset[str]] = {}
         self._behind: dict[str, frozenset[str]] = {}
@@ -83,6 +87,10 @@ class Theory:
                 waiting.extend({c.atom.predicate for c in body} - seen)
                 seen.update(c.atom.predicate for c in body)
         return frozenset(assumed)
+
+    def body(self, rule: Rule) -> frozenset[str]:
+        """The predicates of a rule's conditions."""
+        return self._bodies[id(rule)]
 
     def groups(self, rule: Rule) -> tuple[tuple[Condition, ...], ...]:
         """The conditions of a rule in groups that share no variable but those of its head, in order."""

@@ -1,9 +1,10 @@
 """What could spoil a plan, and how order prevents it (R §7.4: constraints enforced by propagation).
 
-A link is threatened by a step that puts an end to what it protects (an exclusion of the causal theory), and, if
-nothing makes that last, by every step that takes time. The threatening step must then end before the supporting one
-starts, or start after the supported one. What a rule concludes on assumptions is also spoiled if the plan itself ends
-it and is done again: then it may not be relied upon at all (R S: retrying must be idempotent).
+A link is threatened by a step that puts an end to what it protects (an exclusion of the causal theory),
+and, if nothing makes that last, by every step that takes time. The threatening step must then end before
+the supporting one starts, or start after the supported one. What a rule concludes on assumptions is also
+spoiled if the plan itself ends it and is done again: then it may not be relied upon at all (R S: retrying
+must be idempotent).
 """
 
 from __future__ import annotations

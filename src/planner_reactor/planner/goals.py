@@ -1,0 +1,66 @@
+"""The goal as the situation at the root (R (13)): asserted for ever, from the facts that may change to
+what is wanted.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from planner_reactor.errors import InputError, nearest
+from planner_reactor.logic.domain import ActionSchema, Condition, Domain
+from planner_reactor.logic.formulas import Atom, Term, filled
+from planner_reactor.planner.theory import Theory
+
+
+def chosen_goal(domain: Domain, goal: str | None) -> str:
+    """The goal to plan for: the one named, else the first of the domain; InputError if there is none."""
+    if goal is None and domain.goals:
+        return next(iter(domain.goals))
+    if goal is None or goal not in domain.goals:
+        hint = nearest(goal or "", domain.goals) or f"the domain has {', '.join(domain.goals) or 'no goal'}"
+        raise InputError(f"{domain.file}: no goal {goal or ''}, {hint}")
+    return goal
+
+
+def root_schema(theory: Theory, goal_name: str) -> ActionSchema:
+    """The goal as an abstract action without parameters: from the facts that may change to what is
+    wanted (R (13)).
+
+    If facts say for which things the antecedent holds, the goal is meant for each of them, else for
+    whatever an action brings.
+    """
+    goal = theory.domain.goals[goal_name]
+    cases = list(_known_cases(theory, goal.antecedent))
+    wanted: Iterable[Atom]
+    if cases and goal.antecedent:
+        wanted = dict.fromkeys(filled(atom, case) for case in cases for atom in goal.consequent)
+    else:
+        wanted = (*goal.antecedent, *goal.consequent)
+    names = tuple(f"x{n}" for n in range(goal.size))
+    facts = [fact for predicate in theory.domain.facts if predicate in theory.changing
+             for fact in theory.domain.facts[predicate]]  # fmt: skip
+    return ActionSchema(
+        goal.name,
+        names,
+        executability=tuple(Condition(fact) for fact in facts),
+        expansions=tuple(wanted),
+        place=goal.place,
+    )
+
+
+def _known_cases(theory: Theory, atoms: tuple[Atom, ...]) -> Iterator[dict[int, Term]]:
+    """The ways in which lasting facts satisfy the atoms."""
+    cases: list[dict[int, Term]] = [{}]
+    for atom in atoms:
+        facts = theory.domain.facts.get(atom.predicate, ()) if atom.predicate not in theory.changing else ()
+        found = []
+        for case in cases:
+            for fact in facts:
+                extended = dict(case)
+                if all(
+                    extended.setdefault(a, b) == b if type(a) is int else a == b
+                    for a, b in zip(atom.arguments, fact.arguments, strict=True)
+                ):
+                    found.append(extended)
+        cases = found
+    yield from cases

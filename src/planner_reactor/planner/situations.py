@@ -1,0 +1,134 @@
+"""Situations, what they may count on, and how they are made concrete: plain data (R §7.2).
+
+A `Situation` is an abstract action with its constants; a `Refinement` is one way to make it concrete, with
+everything that follows for others: its sub-situations, what it rests on, what has to be cleaned up.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+from planner_reactor.logic.formulas import Atom, Numeral, Term
+from planner_reactor.planner.beliefs import in_doubt
+from planner_reactor.planner.structure import Action, Tree, renamed
+
+
+@dataclass(frozen=True, slots=True)
+class Situation:
+    """An abstract action as a situation: constants are part of it, None stands for what it is asserted
+    with.
+    """
+
+    schema: str
+    arguments: tuple[Term | None, ...] = ()
+
+    def renamed(self, constants: Mapping[Term, Term]) -> Situation:
+        """The same situation of other constants."""
+        return Situation(self.schema, tuple(a if a is None else constants.get(a, a) for a in self.arguments))
+
+
+@dataclass(frozen=True, slots=True)
+class Context:
+    """What a situation may count on, whoever asserts it.
+
+    `granted` tells for each executability condition whether it lasts while the situation does. `replayed`
+    is None if the situation is never asserted again after it succeeded, else the inputs that are then the
+    same. `forbidden` are the abstract actions above it.
+    """
+
+    granted: tuple[bool, ...] = ()
+    replayed: frozenset[int] | None = None
+    forbidden: frozenset[str] = frozenset()
+
+
+@dataclass(frozen=True, slots=True)
+class Child:
+    """A sub-situation as one call uses it."""
+
+    situation: Situation
+    arguments: tuple[Term, ...]
+    granted: tuple[bool, ...]
+    replayed: frozenset[int] | None
+
+    def renamed(self, constants: Mapping[Term, Term]) -> Child:
+        arguments = tuple(constants.get(a, a) for a in self.arguments)
+        return Child(self.situation.renamed(constants), arguments, self.granted, self.replayed)
+
+
+@dataclass(frozen=True, slots=True)
+class Refinement:
+    """How a situation is made concrete; `tree` is None if no plan was found.
+
+    `cleanup` has to be done if it fails after one of the actions `upsets`. `required` are the assumptions
+    that it rests on, `presumed` those that it only brings in, `missing` relaxed ones that were looked for,
+    `asked` conditions that nobody knows, `blocked` actions that stand too high to be used.
+    """
+
+    situation: Situation
+    tree: Tree | None
+    outputs: tuple[tuple[Term, ...], ...] = ()
+    children: tuple[Child, ...] = ()
+    cleanup: tuple[Action, ...] = ()
+    upsets: frozenset[Action] = frozenset()
+    required: frozenset[str] = frozenset()
+    presumed: frozenset[str] = frozenset()
+    missing: frozenset[str] = frozenset()
+    asked: tuple[Atom, ...] = ()
+    blocked: frozenset[str] = frozenset()
+    warnings: tuple[str, ...] = ()
+    gave_up: bool = False
+
+    def serves(self, relaxed: frozenset[str]) -> bool:
+        """Would it be the same with these assumptions relaxed?"""
+        return not any(in_doubt(name, relaxed) for name in (*self.required, *self.presumed)) and all(
+            in_doubt(name, relaxed) for name in self.missing
+        )
+
+    def why_impossible(self, name: str) -> str:
+        """Where no plan was found: what would have been needed."""
+        reasons = []
+        if self.gave_up:
+            reasons.append("the search was given up")
+        if self.asked:
+            reasons.append("not known: " + ", ".join(map(str, self.asked)))
+        if self.missing:
+            reasons.append("not without " + " or ".join(sorted(self.missing)))
+        return f"no plan achieves {name}" + (f" ({'; '.join(reasons)})" if reasons else "")
+
+    def renamed(self, constants: Mapping[Term, Term]) -> Refinement:
+        """The same refinement for constants that the domain does not tell apart."""
+        return replace(
+            self,
+            situation=self.situation.renamed(constants),
+            tree=None if self.tree is None else renamed(self.tree, constants),
+            outputs=tuple(tuple(constants.get(t, t) for t in terms) for terms in self.outputs),
+            children=tuple(child.renamed(constants) for child in self.children),
+            cleanup=tuple(action.renamed(constants) for action in self.cleanup),
+            upsets=frozenset(action.renamed(constants) for action in self.upsets),
+            required=_renamed_names(self.required, constants),
+            presumed=_renamed_names(self.presumed, constants),
+            missing=_renamed_names(self.missing, constants),
+            asked=tuple(
+                Atom(atom.predicate, tuple(constants.get(a, a) for a in atom.arguments)) for atom in self.asked
+            ),
+        )
+
+
+def _renamed_names(names: frozenset[str], constants: Mapping[Term, Term]) -> frozenset[str]:
+    """Names of assumptions, those with arguments for other constants."""
+    if not any("(" in name for name in names):
+        return names
+    found = set()
+    for name in names:
+        whole, bracket, arguments = name.partition("(")
+        if bracket:
+            name = f"{whole}({','.join(str(constants.get(a, a)) for a in arguments[:-1].split(','))})"
+        found.add(name)
+    return frozenset(found)
+
+
+def situation_of(action: Action, *, fold: bool) -> Situation:
+    """The situation that an abstract action asserts; with `fold` constants become part of it."""
+    constants = tuple(a if fold and isinstance(a, str | Numeral) else None for a in action.arguments)
+    return Situation(action.name, constants)

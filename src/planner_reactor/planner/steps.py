@@ -1,0 +1,38 @@
+"""What the planner reports of itself: what one step did, and which assumptions it gave up or took back."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal, TypeAlias
+
+from planner_reactor.link.messages import Adaptation
+
+Relax: TypeAlias = "Literal['all', 'none'] | tuple[str, ...]"
+Cause: TypeAlias = Literal["normal", "forced"]
+StepKind: TypeAlias = Literal["refine", "relax", "reinstate", "watch"]
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """What one step did: worked on a `situation`, for the sake of an `assumption` (or ''), and what it
+    issued.
+    """
+
+    kind: StepKind
+    situation: str = ""
+    assumption: str = ""
+    cause: Cause | Literal["reinstated", ""] = ""
+    adaptations: tuple[Adaptation, ...] = ()
+    purpose: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Relaxation:
+    """One assumption given up or taken back. `adaptations` were issued for it; `done` when the last
+    one was.
+    """
+
+    assumption: str
+    cause: Cause | Literal["reinstated"]
+    adaptations: tuple[int, ...] = ()
+    done: bool = False
