@@ -1,4 +1,6 @@
-"""The order in which things happen, and what a long-lived executer must not do: grow, recurse, or leave rubbish."""
+"""The order in which things happen, and what a long-lived executer must not do: grow, recurse, or leave
+rubbish.
+"""
 
 from __future__ import annotations
 

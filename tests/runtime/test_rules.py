@@ -1,4 +1,6 @@
-"""The rules of semantics.md for processes without situations, as the executer keeps them: one section per rule id."""
+"""The rules of semantics.md for processes without situations, as the executer keeps them: one section per
+rule id.
+"""
 
 from __future__ import annotations
 

@@ -14,12 +14,13 @@ from planner_reactor.rs.prelude import QUANTUM
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Budgets:
-    """`turns`: how often the strands of one served body, or of one root, may run at one instant, beyond once for
-    each strand alive (the Zeno budget); a strand that runs on without waiting is charged for each instruction.
+    """`turns`: how often the strands of one served body, or of one root, may run at one instant, beyond
+    once for each strand alive (the Zeno budget); a strand that runs on without waiting is charged for each
+    instruction.
 
     `quantum`: seconds that a root waits once it has used them up. `processes`: strands alive at once.
-    `depth`: calls within calls of one strand that are not tail calls. `slice`: instructions that a strand runs
-    before it goes to the end of the queue (1: a step each, first in first out).
+    `depth`: calls within calls of one strand that are not tail calls. `slice`: instructions that a strand
+    runs before it goes to the end of the queue (1: a step each, first in first out).
     """
 
     turns: int = 100_000

@@ -199,7 +199,7 @@ class Scheduler:
             if self._present:
                 entry = self._present.pop()
                 entry[0].elapsed(entry)
-            elif not soon:
+            elif not soon and not self._stopped:
                 if self.now >= limit:
                     return
                 clock.reach(min(limit, instants[0]) if instants else limit)
