@@ -6,3 +6,8 @@ From outside in: `planner` (the two loops, what to do next), `adaptations` (from
 plan), `beliefs` (the problem- solving context). It knows a model of the reactor, never the reactor; no word
 of any domain occurs here.
 """
+
+from planner_reactor.planner.planner import Planner
+from planner_reactor.planner.steps import Relaxation, Step
+
+__all__ = ["Planner", "Relaxation", "Step"]

@@ -38,6 +38,8 @@ from planner_reactor.planner.steps import Cause, Relax, Relaxation, Step, StepKi
 from planner_reactor.planner.structure import first_action
 from planner_reactor.planner.theory import Theory
 
+__all__ = ["Planner", "Relaxation", "Step"]
+
 MOST_REFUSALS = 5
 """So often in a row the reactor may refuse what is planned for a situation."""
 
@@ -209,7 +211,8 @@ class Planner:
         for stub in self._issuer.introduced:
             self._agenda.push(stub)
         below += [c.situation for c in segment.children]
-        self._mark(self.model.renew_contexts(below), QUIESCENT if not draft.assumption else self._urgency(draft))
+        forced = self.relaxed.get(draft.assumption) == "forced"
+        self._mark(self.model.renew_contexts(below), FAILED_ASSUMPTION if forced else QUIESCENT)
         self._draft = None
         self._assuming.note(adaptation.id if adaptation else None, done=self._nothing_open)
         if adaptation is None:
@@ -313,9 +316,6 @@ class Planner:
             segment.impossible = ""
             segment.urgency = min(segment.urgency, urgency)
             self._agenda.push(segment)
-
-    def _urgency(self, draft: Draft) -> int:
-        return FAILED_ASSUMPTION if self.relaxed.get(draft.assumption) == "forced" else QUIESCENT
 
     # ---------------------------------------------------------------------------------------- perceptions
 
