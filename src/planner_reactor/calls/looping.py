@@ -212,7 +212,7 @@ def _came_to(made: Loop, faults: FaultSchedule | None, given: _Options) -> dict[
     world = made.host.world
     unstruck = faults.unstruck() if faults is not None else ()
     for fault in unstruck:
-        given.told(f"the fault {fault.kind} at {fault.at:g} s never could strike")
+        given.told(f"the fault {fault.kind}, due at {fault.at:g} s, had not struck by {made.costs.simulated:g} s")
     for situation, why in made.planner.impossible.items():
         given.told(f"no plan for {situation}: {why}")
     return {

@@ -8,7 +8,6 @@ line to whoever listens.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from math import inf
 from pathlib import Path
 from typing import Any
 
@@ -23,6 +22,7 @@ from planner_reactor.rs.printer import show
 from planner_reactor.rs.source import Source
 from planner_reactor.rs.terms import Call, Expression, Program, Schema, Value
 from planner_reactor.runtime import Clock, Executer, Host, Root, Scheduler, VirtualClock, WallClock
+from planner_reactor.runtime.scheduler import END_OF_TIME
 from planner_reactor.trace import Event, Trace
 
 ROOT = "<process>"
@@ -79,7 +79,7 @@ class _LonelyClock(WallClock):
         self.stop: Callable[[], object] = self.interrupt
 
     def reach(self, when: float) -> None:
-        if when == inf:
+        if when >= END_OF_TIME:
             self.stop()
         else:
             super().reach(when)

@@ -41,6 +41,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):
             stream.reconfigure(errors="backslashreplace")
+    if "" not in sys.path:
+        sys.path.append("")  # a host may stand in the current directory; it hides nothing that is installed
     try:
         status = _invoke(given)
         sys.stdout.flush()
@@ -62,6 +64,8 @@ def _invoke(given: list[str]) -> int:
         raise
     except ClickException as error:
         return _refuse(_of_usage(error), given)
+    except SystemExit as error:
+        return _refuse(f"code of a host ended the run: SystemExit: {error.code}", given)
     except PlannerReactorError as error:
         return _refuse(str(error), given)
     except OSError as error:

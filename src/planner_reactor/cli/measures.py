@@ -9,7 +9,7 @@ import typer
 
 from planner_reactor.cli import options
 from planner_reactor.cli.application import command
-from planner_reactor.cli.printing import Advance, console, print_json, reserved_output, table
+from planner_reactor.cli.printing import Advance, print_json, reserved_output, table
 from planner_reactor.errors import InputError
 
 
@@ -60,4 +60,4 @@ def _show(title: str, result: dict[str, Any]) -> None:
             columns = tuple(dict.fromkeys(key for row in value for key in row))
             table(f"{title}: {name}", columns, [tuple(row.get(key) for key in columns) for row in value])
         else:
-            console().print(f"{name}: {value}")
+            print(f"{name}: {value}")

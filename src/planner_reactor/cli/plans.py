@@ -9,7 +9,7 @@ import typer
 
 from planner_reactor.cli import options
 from planner_reactor.cli.application import command
-from planner_reactor.cli.printing import console, print_json, reserved_output, say
+from planner_reactor.cli.printing import print_json, reserved_output, say
 
 
 @command("kitting.itl", "kitting.itl --without AQ,AM --steps 2 --json")
@@ -39,14 +39,13 @@ def plan(
 
 
 def _show_plan(result: dict[str, Any]) -> None:
-    out = console()
     for number, segment in enumerate(result["segments"], start=1):
-        out.print(f"// {number}. {segment['purpose']} ({segment['issued_s'] * 1000:.1f} ms)")
+        print(f"// {number}. {segment['purpose']} ({segment['issued_s'] * 1000:.1f} ms)")
         for name in ("assumptions", "stubs", "perceptions", "kills"):
             if segment[name]:
-                out.print(f"// {name}: {', '.join(map(str, segment[name]))}")
-        out.print(segment["text"])
-    out.print(f"// {len(result['segments'])} segments, {'complete' if result['ideal'] else 'not complete'}")
+                print(f"// {name}: {', '.join(map(str, segment[name]))}")
+        print(segment["text"])
+    print(f"// {len(result['segments'])} segments, {'complete' if result['ideal'] else 'not complete'}")
 
 
 @command("times.txt", "times.txt --json")
@@ -67,13 +66,12 @@ def network(
 
 
 def _show_network(result: dict[str, Any]) -> None:
-    out = console()
-    out.print("consistent" if result["consistent"] else "not consistent: no intervals lie to each other like this")
+    print("consistent" if result["consistent"] else "not consistent: no intervals lie to each other like this")
     if not result["consistent"]:
         return
-    out.print("closure:")
+    print("closure:")
     for edge in result["closure"]:
-        out.print(f"  {edge['first']} ({' '.join(edge['relations'])}) {edge['second']}")
-    out.print("scenario:")
+        print(f"  {edge['first']} ({' '.join(edge['relations'])}) {edge['second']}")
+    print("scenario:")
     for edge in result["scenario"]:
-        out.print(f"  {edge['first']} ({edge['relation']}) {edge['second']}")
+        print(f"  {edge['first']} ({edge['relation']}) {edge['second']}")

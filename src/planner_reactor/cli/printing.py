@@ -72,12 +72,6 @@ def _plain(value: Any) -> Any:
             return str(value)
 
 
-def console() -> Console:
-    """Rich text on standard output; wide and plain where it is no terminal."""
-    width = None if sys.stdout.isatty() else WIDE
-    return Console(file=sys.stdout, highlight=False, markup=False, soft_wrap=True, width=width)
-
-
 def table(title: str, columns: Sequence[str], rows: Sequence[Sequence[object]]) -> None:
     """A table with a title; nothing, if it has no rows. Without names of columns it has no head."""
     if not rows:
@@ -91,7 +85,10 @@ def table(title: str, columns: Sequence[str], rows: Sequence[Sequence[object]]) 
         )
     for row in rows:
         drawn.add_row(*(_cell(value) for value in row))
-    console().print(drawn, soft_wrap=False)
+    console = Console(file=sys.stdout, highlight=False, markup=False, width=None if sys.stdout.isatty() else WIDE)
+    with console.capture() as drawing:  # rich itself would end the process if nobody reads
+        console.print(drawn)
+    print("\n".join(line.rstrip() for line in drawing.get().splitlines()))
 
 
 def _cell(value: object) -> str:

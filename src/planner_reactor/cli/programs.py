@@ -10,7 +10,7 @@ import typer
 
 from planner_reactor.cli import options
 from planner_reactor.cli.application import command
-from planner_reactor.cli.printing import Notes, console, print_json, reserved_output, say
+from planner_reactor.cli.printing import Notes, print_json, reserved_output, say
 from planner_reactor.errors import Diagnostic
 
 
@@ -41,14 +41,13 @@ def run(
 
 def _show_run(process: str, result: dict[str, Any]) -> None:
     cause = f" ({result['cause']})" if result["cause"] else ""
-    out = console()
-    out.print(f"{process}: {result['outcome']}{cause} at {result['time_s']:.3f} s")
+    print(f"{process}: {result['outcome']}{cause} at {result['time_s']:.3f} s")
     for name, value in result["results"].items():
-        out.print(f"  {name} = {value}")
+        print(f"  {name} = {value}")
     counts = f"{result['events']} events, {result['rendezvous']} rendezvous, {result['processes_live']} processes live"
-    out.print(counts)
+    print(counts)
     for port, side in result["waiting"].items():
-        out.print(f"  {side} waits at port {port}")
+        print(f"  {side} waits at port {port}")
     if result["zeno"]:
         say(f"{result['zeno']} went round and round at one instant, and was held up")
 
