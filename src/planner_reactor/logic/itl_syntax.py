@@ -42,8 +42,6 @@ from planner_reactor.logic.itl_nodes import (
 )
 from planner_reactor.logic.itl_tokens import Source, Token, tokens
 
-DEPTH_LIMIT = 100
-"""How deep parentheses may be nested."""
 LABELS = ("presumes", "applicability", "executability", "effects", "otherwise", "expansions")
 
 
@@ -74,7 +72,6 @@ class _Parser:
         self.source = source
         self._tokens = tokens(source)
         self._next = 0
-        self._depth = 0
         self.token: Token = self._tokens[0]
         self._sentences: dict[str, Callable[[], Sentence]] = {
             "atp_assumption": self._assumption,
@@ -94,7 +91,6 @@ class _Parser:
 
     def skip_sentence(self) -> None:
         """Go on to the next word that can begin a sentence."""
-        self._depth = 0
         while self.token.kind != "end":
             self._advance()
             if self.token.text in self._sentences:
@@ -197,6 +193,8 @@ class _Parser:
     def _clauses(self) -> list[Clause]:
         found: list[Clause] = []
         while not self._at_section():
+            if self.token.text in self._sentences:
+                raise self._wrong("endactionschema before the next sentence")
             found.append(self._clause())
             if not self._taken(";") and not self._at_section():
                 raise self._wrong("and, ; or the next section")
@@ -233,13 +231,9 @@ class _Parser:
 
     def _group(self) -> tuple[LiteralNode, ...]:
         closing = ")" if self.token.text == "(" else "]"
-        self._depth += 1
-        if self._depth > DEPTH_LIMIT:
-            raise self._wrong(f"at most {DEPTH_LIMIT} brackets inside each other")
         self._advance()
         clause = self._clause()
         self._need(closing)
-        self._depth -= 1
         if clause.exists:
             raise _WrongSentence(
                 self.source.diagnostic(clause.offset, "misplaced-exists", "Exists inside brackets",

@@ -11,6 +11,8 @@ from typing import NamedTuple
 
 from planner_reactor.errors import Diagnostic, DomainError, Place
 
+DEPTH_LIMIT = 100
+"""How deep brackets may be nested."""
 TEXT_LIMIT = 4_000_000
 """Longest domain text that is read, in characters."""
 
@@ -62,8 +64,14 @@ def tokens(source: Source) -> list[Token]:
         message = f"the text has more than {TEXT_LIMIT} characters"
         raise DomainError([Diagnostic(Place(1, 1, source.file), "error", "too-large", message)])
     found: list[Token] = []
+    depth = 0
     for match in _TOKEN.finditer(source.text):
         kind = match.lastgroup
+        if kind == "sign":
+            depth = max(0, depth + (match[0] in "([") - (match[0] in ")]"))
+            if depth > DEPTH_LIMIT:
+                message = f"more than {DEPTH_LIMIT} brackets inside each other"
+                raise DomainError([source.diagnostic(match.start(), "too-deep", message)])
         if kind == "other":
             hint = "comments begin with //" if match[0] in "#%" else ""
             message = f"{match[0]!r} has no meaning in a domain"

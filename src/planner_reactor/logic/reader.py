@@ -213,9 +213,9 @@ class _Builder:
             self._error(node.right, "unsupported-rule", "ITL(…) among several conclusions",
                         "expected ITL(i, disjunct, j) alone")  # fmt: skip
             return
-        if relation.relation & ~NAMED["disjunct"]:
+        if relation.relation != NAMED["disjunct"]:
             self._error(relation.first, "unsupported-rule", "a rule that orders intervals otherwise",
-                        "expected disjunct, or some of b bi m mi")  # fmt: skip
+                        "expected disjunct")  # fmt: skip
             return
         ends = []
         for name in (relation.first, relation.second):
