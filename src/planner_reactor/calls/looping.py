@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from importlib.resources import files
 from pathlib import Path
 from typing import Any, TypedDict, Unpack
 
@@ -18,17 +17,17 @@ from planner_reactor.calls.inputs import names_in, one_of, read_text, seconds, w
 from planner_reactor.calls.outputs import Outputs
 from planner_reactor.errors import InputError
 from planner_reactor.experiments.loop import Loop, summary
-from planner_reactor.experiments.timing import PER_STEP, Fixed, Measured, PlannerTime, Recorded
+from planner_reactor.experiments.runs import planner_time
+from planner_reactor.experiments.timing import PER_STEP, PlannerTime
 from planner_reactor.logic.reader import read_domain
 from planner_reactor.planner import Planner
 from planner_reactor.runtime import Host, Scheduler, VirtualClock, WallClock
 from planner_reactor.trace import Trace
-from planner_reactor.workcell.domains import with_kit
+from planner_reactor.workcell.domains import SHIPPED, shipped_domain, with_kit
 from planner_reactor.workcell.faults import FaultSchedule, faults_from
 from planner_reactor.workcell.kit import KitSpec, kit_from
-from planner_reactor.workcell.papers import planner_durations
 
-KITTING_DOMAIN, KITTING_HOST = "kitting.itl", "planner_reactor.workcell.host"
+KITTING_HOST = "planner_reactor.workcell.host"
 TRAYS = 5
 """Kits of a run of which neither a number nor an end was given."""
 
@@ -101,8 +100,7 @@ def kit(*, domain: str | Path | None = None, **options: Unpack[LoopOptions]) -> 
         options["trays"] = TRAYS
     if domain is not None:
         return loop(domain, host=KITTING_HOST, **options)
-    shipped = files("planner_reactor.workcell") / KITTING_DOMAIN
-    return _run(shipped.read_text(encoding="utf-8"), KITTING_DOMAIN, KITTING_HOST, None, _Options(**options))
+    return _run(shipped_domain(), SHIPPED, KITTING_HOST, None, _Options(**options))
 
 
 def loop(
@@ -112,8 +110,9 @@ def loop(
 
     Returns what the world reports (for kitting `kits`, `parts`, `faults`, …), `adaptations`, `changes_applied`,
     `assumptions`, `first_adaptation_issued_s`, `first_reactor_s`, `first_ideal_s`, `stub_triggers`, `relaxations`,
-    `interruptions`, `laws_checked`, `violations`, `unstruck` (faults that never could strike), `finished`,
-    `simulated_s`, `wall_s`, `cpu_s` and `trace_hash`. Raises InputError or SourceError for what cannot be used.
+    `interruptions`, `laws_checked`, `violations`, `unstruck` (faults that have not struck), `finished`, `figures`
+    (the files drawn), `simulated_s`, `wall_s`, `cpu_s` and `trace_hash`. Raises InputError or SourceError for what
+    cannot be used.
     """
     given = _Options(**options)
     return _run(read_text(domain), str(domain), host, goal, given)
@@ -127,7 +126,7 @@ def _run(text: str, file: str, host: HostSource, goal: str | None, given: _Optio
             made.trace.record("not_deterministic", because="the clock is the wall clock")
         given.watch(made)
         made.run(until=given.until)
-    return _came_to(made, faults, given)
+    return {**_came_to(made, faults, given), "figures": outputs.drawn}
 
 
 def _prepared(
@@ -173,18 +172,14 @@ def _relaxed(relax: str | tuple[str, ...]) -> Any:
 
 def _planner_time(charge: float | str) -> PlannerTime:
     if charge == "measured":
-        return Measured()
+        return planner_time("measured")
     if charge == "papers":
-        took = planner_durations()
-        return Recorded(
-            first=took.first_adaptation_s, refinement=took.refinement_s, forced_first=took.forced_first_s,
-            forced=took.forced_s, normal=took.normal, other=took.other_s,
-        )  # fmt: skip
+        return planner_time("papers")
     try:
         per_step = seconds("planner time", float(charge))
     except ValueError as error:
         raise InputError(f"planner time is {charge}, expected measured, papers, or seconds, 0 or more") from error
-    return Fixed(PER_STEP if per_step is None else per_step)
+    return planner_time(PER_STEP if per_step is None else per_step)
 
 
 def _expect(maker: HostMaker, given: _Options, kit_spec: KitSpec | None) -> None:

@@ -19,12 +19,13 @@ FIGURES = "planner_reactor.experiments.figures"
 
 
 class Outputs:
-    """Opened by `with`; a run that ends well is drawn when it is left."""
+    """Opened by `with`; a run that ends well is drawn when it is left (`drawn`: the files)."""
 
     def __init__(self, trace: str | Path | None, figures: str | Path | None) -> None:
         """Refuses what could not be written, with InputError."""
         self._trace = None if trace is None else _trace_file(Path(trace))
         self._figures = None if figures is None else _figures_folder(figures)
+        self.drawn: list[str] = []
         self._lines: JsonLines | None = None
         self._kept: Trace | None = None
 
@@ -39,7 +40,7 @@ class Outputs:
         """Write down what this trace records from now on."""
         self._kept = trace
         if self._lines is not None:
-            trace.sinks.append(self._lines)
+            trace.sinks.insert(0, self._lines)  # before those that record something more in answer
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, where: TracebackType | None
@@ -47,7 +48,7 @@ class Outputs:
         if self._lines is not None:
             self._lines.close()
         if self._figures is not None and self._kept is not None and kind is None:
-            import_module(FIGURES).draw(self._kept.events, self._figures)
+            self.drawn = [str(path) for path in import_module(FIGURES).draw(self._kept.events, self._figures)]
 
 
 def _trace_file(trace: Path) -> Path:
@@ -61,6 +62,4 @@ def _trace_file(trace: Path) -> Path:
 def _figures_folder(figures: str | Path) -> Path:
     if find_spec("matplotlib") is None:
         raise InputError("figures: drawing needs matplotlib, the extra `figures`: pip install planner-reactor[figures]")
-    if find_spec(FIGURES) is None:
-        raise InputError("figures: drawing is not in this version")
     return writable_folder(figures, called="figures")

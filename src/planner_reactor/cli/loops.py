@@ -123,6 +123,8 @@ def _show(result: Mapping[str, Any]) -> None:
     table("Relaxations", ("assumption", "cause", "decided s", "issued s", "applied s"), relaxations)
     faults = result.get("faults", ())
     table("Faults", tuple(faults[0]) if faults else (), [tuple(fault.values()) for fault in faults])
+    for drawn in result["figures"]:
+        print(drawn)
     table("Violations", ("law",), [(violation,) for violation in result["violations"]])
 
 
