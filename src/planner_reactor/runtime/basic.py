@@ -38,7 +38,7 @@ class Basic:
         "_kernel",
         "_limit",
         "_low",
-        "_plain",
+        "_nothing",
         "_routine",
         "name",
         "running",
@@ -59,7 +59,8 @@ class Basic:
         self._limit = process.limit
         self._low = process.signature.window[0] if process.signature.window else 0.0
         self._checks = tuple((i, _CHECKS[k]) for i, k in enumerate(process.signature.inputs) if k in _CHECKS)
-        self._plain = STOPPED if not process.signature.results and "stop" in process.signature.outcomes else None
+        may_stop = not process.signature.results and "stop" in process.signature.outcomes
+        self._nothing = STOPPED if may_stop and not self._low else None  # what returning None at once means
 
     def start(self, strand: Strand, arguments: tuple[Value, ...]) -> Outcome | None:
         for position, check in self._checks:
@@ -70,6 +71,8 @@ class Basic:
             begun = self._routine(*arguments)
         except Exception as problem:
             return self._settled(self.raised(problem), strand, arguments)
+        if begun is None and self._nothing is not None:
+            return self._nothing
         if not isinstance(begun, _ROUTINES):
             return self._settled(self.returned(begun), strand, arguments)
         run = Run(self, strand, arguments, begun)
@@ -96,8 +99,6 @@ class Basic:
     # -- for its runs
 
     def returned(self, value: object) -> Outcome:
-        if value is None and self._plain is not None:
-            return self._plain
         values: tuple[Value, ...] = value if isinstance(value, tuple) else () if value is None else (value,)
         if len(values) != len(self.signature.results):
             self._kernel.note("error", name=self.name, message=f"returned {len(values)} values, "
@@ -234,7 +235,7 @@ class Run:
             leaf: Use = strand.pc  # type: ignore[assignment]  # basic processes are leaves of this kind
             strand.link = None
             onward = leaf.finish(strand, self._arguments, outcome)
-            self._basic._kernel.resume(strand, onward, counted=True)
+            self._basic._kernel.resume(strand, onward)
 
     def close(self) -> None:
         """Wait for nothing any more."""

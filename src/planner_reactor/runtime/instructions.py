@@ -116,7 +116,8 @@ class TailCall:
         if clause is None:
             return self.failed
         code = clause.plain_code or clause.plain()
-        frame.extend(code.blank)
+        if code.blank:
+            frame += code.blank
         strand.frame = frame
         return code.entry
 

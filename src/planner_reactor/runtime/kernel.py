@@ -20,8 +20,8 @@ from planner_reactor.rs.terms import Value
 from planner_reactor.runtime.budgets import Budgets
 from planner_reactor.runtime.killing import abort_body, kill
 from planner_reactor.runtime.outcomes import Observer
-from planner_reactor.runtime.pause import Pause
-from planner_reactor.runtime.scheduler import Scheduler
+from planner_reactor.runtime.pause import Passing, Pause
+from planner_reactor.runtime.scheduler import Entry, Scheduler
 from planner_reactor.runtime.strands import (
     READY,
     RUNNING,
@@ -156,24 +156,50 @@ class Kernel:
             self._armed = True
             self.scheduler.soon(self.drain)
 
-    def resume(self, strand: Strand, pc: Instruction, *, counted: bool = False) -> None:
-        """A waiting leaf has ended by itself (a step, already observed): go on behind it.
+    def resume(self, strand: Strand, pc: Instruction) -> None:
+        """A basic process has ended (a step, already observed), perhaps after no time: go on behind it.
 
-        For what the scheduler calls, never from within a turn. `counted`: it may have taken no time.
+        For what the scheduler calls, never from within a turn.
         """
         strand.link = None
         if self.due:
             self.queue(strand, pc)
             self.arm()
             return
-        if counted:
-            self.turn(strand, pc)
-        else:
-            self.run(strand, pc)
+        self.turn(strand, pc)
         if self.watched:
             self.moved(strand)
         if self.due or self.ready:
             self.drain()
+
+    def elapsed(self, entry: Entry) -> None:
+        """The time that a strand waits for has passed: a step of its leaf, as in `resume`."""
+        strand = entry[1]
+        if strand.link is not entry:
+            return
+        leaf: Passing = strand.pc
+        self.steps += 1
+        if self.observer is not None:
+            leaf.observe(strand)
+        strand.link = None
+        if self.due:
+            self.queue(strand, leaf.ok)
+            self.arm()
+            return
+        self.run(strand, leaf.ok)
+        if self.watched:
+            self.moved(strand)
+        if self.due or self.ready:
+            self.drain()
+
+    def awaits(self, entry: Entry) -> bool:
+        """Does this strand still wait for this instant?"""
+        return entry[1].link is entry
+
+    def withdraw(self, strand: Strand) -> None:
+        """A strand that waits for time is aborted."""
+        strand.link = None
+        self.scheduler.withdrawn()
 
     def communicated(self, strand: Strand, pc: Instruction) -> bool:
         """COM: take the partner on, within the step of the one that runs. Is nothing else due?"""
@@ -237,8 +263,8 @@ class Kernel:
         if strand.body is not None:
             abort_body(self, strand.body, "budget")
             return
-        strand.pc = pause = Pause(self.scheduler, self.resume, onward)
-        strand.link = entry = (pause, strand)
+        strand.pc = Pause(self, onward)
+        strand.link = entry = (self, strand)
         strand.state = WAITING
         self.scheduler.wait(self.scheduler.now + self.budgets.quantum, entry)
 

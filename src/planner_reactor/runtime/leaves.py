@@ -16,7 +16,6 @@ from planner_reactor.rs.terms import Expression, Number, Value, Variable
 from planner_reactor.runtime.instructions import enter
 from planner_reactor.runtime.kernel import Kernel
 from planner_reactor.runtime.outcomes import STOPPED, Control, OpensBody, Outcome
-from planner_reactor.runtime.scheduler import Entry
 from planner_reactor.runtime.strands import RUNNING, WAITING, Frame, Instruction, Strand, Where
 from planner_reactor.runtime.values import Reader, Slots, Tuples
 
@@ -164,25 +163,15 @@ class Pass:
             return self._ended(strand, ok=True)
         strand.pc = self
         strand.state = WAITING
-        strand.link = entry = (self, strand)
+        strand.link = entry = (self.kernel, strand)
         scheduler.wait(when, entry)
         return None
 
-    def elapsed(self, entry: Entry) -> None:
-        strand = entry[1]
-        if strand.link is entry:
-            kernel = self.kernel
-            kernel.steps += 1
-            if kernel.observer is not None:
-                kernel.observer((self.setting.name, self.setting.arguments(strand.frame), "ok", ()))
-            kernel.resume(strand, self.ok)
-
-    def awaits(self, entry: Entry) -> bool:
-        return entry[1].link is entry
+    def observe(self, strand: Strand) -> None:
+        observe(self.kernel, self.setting.name, self.setting.arguments(strand.frame), ok=True)
 
     def cancel(self, strand: Strand) -> None:
-        strand.link = None
-        self._scheduler.withdrawn()
+        self.kernel.withdraw(strand)
 
     def _ended(self, strand: Strand, *, ok: bool) -> Instruction:
         """A step at once: no time was to pass, or the argument is no number."""

@@ -1,42 +1,49 @@
-"""Where a strand of a root stands that has used up its turns at one instant: it goes on a quantum later.
+"""What waits for time: the face of such a leaf, and the one that a budget puts in place of a root's next round.
 
-Semantics.md, STREAM: the budget aborts the nearest enclosing body, never a root, whose next round waits one
+Semantics.md, STREAM: a budget of turns aborts the nearest enclosing body, never a root, whose next round waits one
 quantum.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from typing import Protocol
 
-from planner_reactor.runtime.scheduler import Entry, Scheduler
 from planner_reactor.runtime.strands import NOWHERE, Instruction, Strand
 
 
-class Pause:
-    """A leaf put in place of the instruction that is to go on."""
+class Passing(Instruction, Protocol):
+    """A leaf that stops when its time has passed."""
 
-    __slots__ = ("_onward", "_resume", "_scheduler")
+    @property
+    def ok(self) -> Instruction: ...
+
+    def observe(self, strand: Strand) -> None:
+        """Tell the observer of the step with which it ends."""
+
+
+class Withdrawing(Protocol):
+    """What the kernel does when a strand that waits for time is aborted."""
+
+    def withdraw(self, strand: Strand) -> None: ...
+
+
+class Pause:
+    """Stands where a strand of a root has used up its turns of one instant; no step that an observer sees."""
+
+    __slots__ = ("_kernel", "ok")
     silent = False
     where = NOWHERE
     resting = False
 
-    def __init__(
-        self, scheduler: Scheduler, resume: Callable[[Strand, Instruction], None], onward: Instruction
-    ) -> None:
-        self._scheduler = scheduler
-        self._resume = resume
-        self._onward = onward
+    def __init__(self, kernel: Withdrawing, onward: Instruction) -> None:
+        self._kernel = kernel
+        self.ok = onward
 
     def run(self, strand: Strand) -> Instruction | None:
-        return self._onward
+        return self.ok
 
-    def elapsed(self, entry: Entry) -> None:
-        if self.awaits(entry):
-            self._resume(entry[1], self._onward)
-
-    def awaits(self, entry: Entry) -> bool:
-        return entry[1].link is entry
+    def observe(self, strand: Strand) -> None:
+        """Nothing has happened."""
 
     def cancel(self, strand: Strand) -> None:
-        strand.link = None
-        self._scheduler.withdrawn()
+        self._kernel.withdraw(strand)

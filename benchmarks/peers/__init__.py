@@ -1,0 +1,1 @@
+"""What today's executives do with the same work, in their own idiom. Each module is imported only if it is there."""
