@@ -205,7 +205,9 @@ class Loop:
             if relaxation.last == adaptation_id:
                 relaxation.applied_s = now
         last = self._completes_ideal
-        if self.milestones.first_ideal_s is None and last is not None and min(self._unanswered, default=last + 1) > last:
+        if last is None or self.milestones.first_ideal_s is not None:
+            return
+        if min(self._unanswered, default=last + 1) > last:
             self.milestones.first_ideal_s = now
             self.trace.record("ideal")
 

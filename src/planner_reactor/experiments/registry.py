@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from importlib import import_module
 from pathlib import Path
 from typing import Any, Protocol
 
@@ -28,4 +29,20 @@ class Experiment:
     run: Run
 
 
-EXPERIMENTS: dict[str, Experiment] = {}
+def _of(module: str) -> Run:
+    """The function `experiment` of a module of this package, which is imported when it is called."""
+
+    def run(out: Path, *, trials: int | None, workers: int, watch: Callable[[int, int], object]) -> Mapping[str, Any]:
+        found: Mapping[str, Any] = import_module(f"planner_reactor.experiments.{module}").experiment(
+            out, trials=trials, workers=workers, watch=watch
+        )
+        return found
+
+    return run
+
+
+EXPERIMENTS: dict[str, Experiment] = {
+    "papers": Experiment("the papers' run on their clock and on ours: figures, tables, one page", _of("papers_run")),
+    "faults": Experiment("random faults, seed after seed, with relaxing and without", _of("fault_trials")),
+    "startup": Experiment("how long the planner thinks: to act, to be ideal, to relax", _of("startup")),
+}

@@ -35,7 +35,7 @@ class Run:
 
     seed: int = 1
     relax: Relax = "all"
-    planner_time: float | Literal["measured", "papers"] = PER_STEP
+    planner_time: float | Literal["measured", "papers"] | PlannerTime = PER_STEP
     calibration: Calibration = PINNED
     faults: Faults = lambda world: ()
     products: int = 0
@@ -73,8 +73,10 @@ def the_domain() -> Domain:
     return read_domain(shipped_domain(), file=SHIPPED)
 
 
-def planner_time(charge: float | Literal["measured", "papers"]) -> PlannerTime:
+def planner_time(charge: float | Literal["measured", "papers"] | PlannerTime) -> PlannerTime:
     """What the planner's thinking is charged."""
+    if isinstance(charge, float | int):
+        return Fixed(charge)
     if charge == "measured":
         return Measured()
     if charge == "papers":
@@ -87,7 +89,7 @@ def planner_time(charge: float | Literal["measured", "papers"]) -> PlannerTime:
             normal=took.normal,
             other=took.other_s,
         )
-    return Fixed(charge)
+    return charge
 
 
 def _host(run: Run, scheduler: Scheduler, trace: Trace) -> Any:

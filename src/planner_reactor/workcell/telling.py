@@ -7,6 +7,7 @@ the report are all that it reads.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any
 
 from planner_reactor.trace import Event
@@ -28,8 +29,24 @@ MEANING = {
 }
 """What each assumption of R §8.2 says, while it is held."""
 
-CONTINUING = {"downstream_ready": "downstream_blocked"}
-"""Kinds of fault that end another one: they can strike only after it."""
+PAPERS_NOTES = (
+    "papers' clock: the durations of the planner of 1994, and an arm 3.3 times slower than ours. Its pace is not "
+    "printed; it follows from no stub having been reached in the 14 s before the first ideal reactor was there.",
+    "AM: a part slides away just as the gripper closes on it, so the fault of 152 s strikes when it next does.",
+    "AS: the planner issues the next adaptation of a situation when the last one is in; on the papers' clock those for "
+    "AS wait for those for AQ, and these for situations to end.",
+    "40 s and 42 s, 11 s and 14 s: the papers contradict themselves there.",
+)
+"""What has to be said of a replay of the papers' run in this cell."""
+
+ENDLESS = {"downstream_blocked": "duration_s"}
+"""Kinds of fault that last for ever, unless this parameter says otherwise."""
+
+ENDING = ("downstream_ready",)
+"""Kinds of fault that end another one, and cannot strike without it."""
+
+EACH = tuple(next(k for k, d in DISTURBANCES.items() if d.breaks == assumption) for assumption in MEANING)
+"""One kind of fault for each assumption."""
 
 
 def verdict(event: Event) -> bool | None:
@@ -51,6 +68,21 @@ def told(event: Event) -> str | None:
             return f"a kit is rejected: {', '.join(event.data['reasons'])}"
         case "fault_struck":
             happens = (DISTURBANCES[event.data["fault"]].strike.__doc__ or event.data["fault"]).strip()
-            return happens.partition(" (`")[0].rstrip(".") + "."
+            happens = happens.partition(" (")[0].rstrip(".")
+            return happens[:1].lower() + happens[1:]
         case _:
             return None
+
+
+@dataclass(frozen=True, slots=True)
+class Loss:
+    """A kit that was rejected: when (seconds), why, and the kinds of fault that spoiled it."""
+
+    time: float
+    reasons: tuple[str, ...]
+    faults: tuple[str, ...]
+
+
+def lost(report: Mapping[str, Any]) -> list[Loss]:
+    """The kits that were rejected, from the cell's report."""
+    return [Loss(r["time_s"], tuple(r["reasons"]), tuple(r["faults"])) for r in report["rejections"]]
