@@ -14,6 +14,7 @@ from typing import TypeAlias
 
 from planner_reactor.rs.configurations import Config, Label, World
 from planner_reactor.rs.evolves import settle
+from planner_reactor.rs.expressions import is_number
 from planner_reactor.rs.states import (
     Await,
     Bindings,
@@ -34,6 +35,7 @@ from planner_reactor.rs.states import (
 )
 from planner_reactor.rs.store import Store
 from planner_reactor.rs.terms import Value
+from planner_reactor.rs.tests import TESTS
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,11 +118,7 @@ def window(leaf: Leaf, world: World) -> tuple[float, float]:
 
 def _seconds(leaf: Leaf) -> float:
     value = leaf.arguments[0] if leaf.arguments else None
-    return max(0.0, float(value)) if _is_number(value) else 0.0  # type: ignore[arg-type]
-
-
-def _is_number(value: Value) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool)
+    return max(0.0, float(value)) if is_number(value) else 0.0  # type: ignore[arg-type]
 
 
 def _ended(spot: Spot, leaf: Leaf, config: Config, world: World) -> Iterator[Step]:
@@ -136,7 +134,7 @@ def _ended(spot: Spot, leaf: Leaf, config: Config, world: World) -> Iterator[Ste
 
 def _endings(leaf: Leaf, world: World) -> Iterator[tuple[bool, tuple[Value, ...]]]:
     if leaf.name in ("Delay", "SUSPEND", "Term"):
-        yield (True, ()) if leaf.arguments and _is_number(leaf.arguments[0]) else (False, ())
+        yield (True, ()) if leaf.arguments and is_number(leaf.arguments[0]) else (False, ())
     elif leaf.name in TESTS:
         yield TESTS[leaf.name](*leaf.arguments), ()
     else:
@@ -145,20 +143,6 @@ def _endings(leaf: Leaf, world: World) -> Iterator[tuple[bool, tuple[Value, ...]
 
 def _results(leaf: Leaf, values: tuple[Value, ...]) -> Bindings:
     return bind(tuple(zip(leaf.results, values, strict=False)))
-
-
-def _greater(a: Value, b: Value) -> bool:
-    return _is_number(a) and _is_number(b) and a > b  # type: ignore[operator]
-
-
-def equal(a: Value, b: Value, tolerance: Value = 1e-9) -> bool:
-    """Equal, within a tolerance where both are numbers."""
-    if _is_number(a) and _is_number(b) and _is_number(tolerance):
-        return bool(abs(a - b) <= tolerance)  # type: ignore[operator]
-    return a == b
-
-
-TESTS: dict[str, Callable[..., bool]] = {"GTR": _greater, "LST": lambda a, b: _greater(b, a), "Equal": equal}
 
 
 def slack(config: Config, world: World) -> float:
