@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 import pytest
 
+from planner_reactor.experiments.loop import Loop, summary
 from planner_reactor.workcell.domains import shipped_domain
 from tests.cli.conftest import Call
 
@@ -175,6 +178,16 @@ def test_loop_warns_of_an_assumption_that_nobody_senses(call: Call, tiny: Path) 
     assert ran.status == 0
     assert "odd.itl:1:16: nobody can tell whether Easi holds, did you mean Easy?" in ran.err
     assert call("check", "odd.itl", "--host", "tiny_host", "--strict").status == 1
+
+
+def test_a_broken_law_ends_with_1(call: Call, monkeypatch: pytest.MonkeyPatch) -> None:
+    def broken(made: Loop) -> Mapping[str, Any]:
+        return {**summary(made), "violations": ["law 2 at 1.0 s: a reaction in service was cut"]}
+
+    monkeypatch.setattr("planner_reactor.calls.looping.summary", broken)
+    ran = call("kit", "--until", "5")
+    assert ran.status == 1
+    assert "a reaction in service was cut" in ran.out
 
 
 @pytest.mark.parametrize(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import shlex
 import signal
 import subprocess
 import sys
@@ -156,6 +157,15 @@ def test_a_reader_that_goes_away_ends_it_quietly(place: Path) -> None:
         process.stdout.close()
         assert process.wait(15) in (0, 128 + signal.SIGPIPE)
         assert process.stderr.read() == b""
+
+
+def test_standard_output_that_is_full_or_closed_is_no_reason_for_a_traceback(place: Path) -> None:
+    for redirection, status, said in ((">/dev/full", 2, "No space left on device\n"), (">&-", 0, "")):
+        line = f"{shlex.join(COMMAND)} network times.txt {redirection}"
+        done = subprocess.run(["sh", "-c", line], capture_output=True, text=True, check=False)
+        assert done.returncode == status
+        assert done.stderr.endswith(said)
+        assert done.stderr.count("\n") == status // 2
 
 
 def test_ctrl_c_ends_a_long_run_with_130_and_without_a_word(place: Path) -> None:

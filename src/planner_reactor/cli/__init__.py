@@ -13,6 +13,7 @@ import signal
 import sys
 import traceback
 from collections.abc import Sequence
+from contextlib import suppress
 
 import typer
 from typer.main import get_command
@@ -38,9 +39,7 @@ app.registered_commands.sort(key=lambda registered: ORDER.index(str(registered.n
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command with these arguments (default: those of the process); the exit status."""
     given = list(sys.argv[1:] if arguments is None else arguments) or ["--help"]
-    for stream in (sys.stdout, sys.stderr):
-        if hasattr(stream, "reconfigure"):
-            stream.reconfigure(errors="backslashreplace")
+    _prepare_streams()
     if "" not in sys.path:
         sys.path.append("")  # a host may stand in the current directory; it hides nothing that is installed
     try:
@@ -49,8 +48,22 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         return INTERRUPTED
     except BrokenPipeError:
-        return _abandon_output()
+        _abandon_output()
+        return PIPE_BROKEN
+    except OSError as error:
+        _abandon_output()
+        print(f"standard output: {error.strerror}", file=sys.stderr)
+        return 2
     return status
+
+
+def _prepare_streams() -> None:
+    """What a stream cannot encode is shown in another way; a closed one takes everything and keeps nothing."""
+    sys.stdout = sys.stdout or open(os.devnull, "w")  # noqa: SIM115  # as long as the process lives
+    sys.stderr = sys.stderr or open(os.devnull, "w")  # noqa: SIM115
+    for stream in (sys.stdout, sys.stderr):
+        if hasattr(stream, "reconfigure"):
+            stream.reconfigure(errors="backslashreplace")
 
 
 def _invoke(given: list[str]) -> int:
@@ -106,12 +119,8 @@ def _of_usage(error: BaseException) -> str:
     return f"{path}: {told} ({path} --help tells more)"
 
 
-def _abandon_output() -> int:
+def _abandon_output() -> None:
     """Nobody reads any more: what is still buffered must not complain when Python ends."""
     void = os.open(os.devnull, os.O_WRONLY)
-    for stream in (sys.stdout, sys.stderr):
-        try:
-            os.dup2(void, stream.fileno())
-        except (OSError, ValueError):
-            continue
-    return PIPE_BROKEN
+    with suppress(OSError, ValueError):
+        os.dup2(void, sys.stdout.fileno())
