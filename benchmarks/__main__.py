@@ -13,14 +13,11 @@ import os
 import platform
 import sys
 from collections.abc import Callable
-from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-sys.path.insert(0, str(Path(__file__).parent))
-
-import bench_executer as ours  # noqa: E402
-from measuring import Work, rates  # noqa: E402
+import bench_executer as ours
+from measuring import Work, rates
 
 PEERS = ("simpy", "asyncio", "trio")
 COUNTS = (10, 1_000, 100_000)

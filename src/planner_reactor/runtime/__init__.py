@@ -1,9 +1,9 @@
 """The executer: RS programs run here, on a virtual clock or on the wall clock (R §9.1, RS-L3).
 
-Where to look: `clock` and `scheduler` own time, order, randomness and what comes in from other threads;
-`signals` and `host` are what a host module is written with; `compiler` turns terms into linked
-`instructions` and `leaves`; `kernel` runs strands through them; `executer` is the face of it all. Nothing
-here knows situations or the planner: the reactor plugs its processes in as `Control`s (see `outcomes`).
+Where to look: `clock` and `scheduler` own time, order, randomness and what comes in from other threads; `signals` and
+`host` are what a host module is written with; `compiler` turns terms into linked `instructions` and `leaves`; `kernel`
+runs strands through them; `executer` is the face of it all. Nothing here knows situations or the planner: the reactor
+plugs its processes in as `Control`s (see `outcomes`).
 """
 
 from __future__ import annotations

@@ -1,9 +1,8 @@
 """Basic processes while they run: a host's function, generator or coroutine behind the face of a `Control`.
 
-Each run has at most one thing that it waits for (a signal, a time, or both) and one timer for its limit. It
-ends in one of four ways: it returns, it raises, it outlives its limit, it is aborted from outside (N9); in
-the last two it is abandoned, exactly once. What a host's code raises is an abort with cause error and an
-event in the trace, never more.
+Each run has at most one thing that it waits for (a signal, a time, or both) and one timer for its limit. It ends in
+one of four ways: it returns, it raises, it outlives its limit, it is aborted from outside (N9); in the last two it is
+abandoned, exactly once. What a host's code raises is an abort with cause error and an event in the trace, never more.
 """
 
 from __future__ import annotations
@@ -24,9 +23,7 @@ from planner_reactor.runtime.signals import Aborted, Signal, Within, sleep
 from planner_reactor.runtime.strands import WAITING, Strand
 
 ROUNDING = 1e-9
-"""Seconds (or a fraction, if that is more) by which a process may outlive its limit: sums of delays are
-rounded.
-"""
+"""Seconds (or a fraction, if that is more) by which a process may outlive its limit: sums of delays are rounded."""
 
 
 class Basic:

@@ -1,9 +1,8 @@
 """Two clocks with one face: virtual time, which jumps, and the wall clock, which waits.
 
-The scheduler asks its clock to `reach` an instant and is told which instant it now is. On the virtual clock
-that is always the one asked for; on the wall clock it may be earlier, because something was posted from
-another thread. Times are seconds since the clock was made. Control uses the monotonic clock (rule TIME),
-never the time of day.
+The scheduler asks its clock to `reach` an instant and is told which instant it now is. On the virtual clock that is
+always the one asked for; on the wall clock it may be earlier, because something was posted from another thread. Times
+are seconds since the clock was made. Control uses the monotonic clock (rule TIME), never the time of day.
 """
 
 from __future__ import annotations

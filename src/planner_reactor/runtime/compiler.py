@@ -1,12 +1,11 @@
 """Terms compiled to linked instructions.
 
-A process is compiled from its end: given where to go on when it stops (`ok`) and when it aborts (`ab`), the
-compiler returns where it begins. So `;` compiles its left part with both exits on the right part's
-beginning, `:` only its stop, `~` swaps them, and none of these leaves an instruction behind.
+A process is compiled from its end: given where to go on when it stops (`ok`) and when it aborts (`ab`), the compiler
+returns where it begins. So `;` compiles its left part with both exits on the right part's beginning, `:` only its
+stop, `~` swaps them, and none of these leaves an instruction behind.
 
-Each name that is bound has a slot of the frame. Names are bound within *regions*: a definition's body, the
-body of a loop (its bindings are hidden), each part of a `#` (only the winner's leave). Rounds forget the
-slots of their loop.
+Each name that is bound has a slot of the frame. Names are bound within *regions*: a definition's body, the body of a
+loop (its bindings are hidden), each part of a `#` (only the winner's leave). Rounds forget the slots of their loop.
 """
 
 from __future__ import annotations
@@ -223,7 +222,7 @@ class _Body:
 
     def loop(self, term: Loop, region: Region, exits: Exits, where: Where) -> Instruction:
         sensing, serving = (self.sensing, self.serving) if where is self.outside else (where, where)
-        again = instructions.Round(self.kernel, where)
+        again = instructions.Round(where)
         before = region.size
         hidden = Region(region)
         hidden.declare(term.body)

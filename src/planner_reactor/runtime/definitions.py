@@ -1,9 +1,9 @@
 """The definitions that a running executer knows: loaded and unloaded at any time, selected by name and value.
 
-A call asks its `Definition` for the clause that applies to the values of its arguments; clauses with
-constants in their heads are found by a dictionary of those constants, so that ten thousand reactions `P[n]
-= …` are selected from as fast as one. A clause is compiled when it is first called. What a strand runs
-stays as it was, whatever is loaded or unloaded meanwhile.
+A call asks its `Definition` for the clause that applies to the values of its arguments; clauses with constants in
+their heads are found by a dictionary of those constants, so that ten thousand reactions `P[n] = …` are selected from
+as fast as one. A clause is compiled when it is first called. What a strand runs stays as it was, whatever is loaded or
+unloaded meanwhile.
 """
 
 from __future__ import annotations
@@ -28,9 +28,7 @@ Compile = Callable[[Schema, bool], Code]
 
 
 class Clause:
-    """One schema. Compiled twice at most: with its results exported, and without (then its tail calls are
-    tails).
-    """
+    """One schema. Compiled twice at most: with its results exported, and without (then its tail calls are tails)."""
 
     __slots__ = ("_compile", "_exporting", "plain_code", "schema")
 

@@ -1,8 +1,8 @@
 """The executer: starts processes, loads and unloads definitions while they run, and says how things stand.
 
-RS-L3 of R §9.1, in Python: definitions are passed to a running executer as they are made. It is driven by
-its scheduler alone; between events nothing runs. The reactor extends it by `Control`s and speaks to it by
-`end`, `wake`, `resting` and `watch`.
+RS-L3 of R §9.1, in Python: definitions are passed to a running executer as they are made. It is driven by its
+scheduler alone; between events nothing runs. The reactor extends it by `Control`s and speaks to it by `end`, `wake`,
+`resting` and `watch`.
 """
 
 from __future__ import annotations
@@ -29,9 +29,7 @@ from planner_reactor.trace import Trace
 
 @dataclass(frozen=True, slots=True)
 class Statistics:
-    """How things stand. `time` in seconds; `zeno` names the definition that last used up a budget of
-    rounds.
-    """
+    """How things stand. `time` in seconds; `zeno` names the definition that last used up a budget of rounds."""
 
     time: float
     processes_live: int
@@ -76,16 +74,14 @@ class Executer:
         self._running = False
         self._kernel.on_end = self._ended
         if trace is not None:
-            self._kernel.note = lambda kind, **fields: trace.record(kind, **fields)
+            self._kernel.note = trace.record
         self._compiler.definitions.load(PRELUDE.schemas)
         self.load(program.schemas)
 
     # -- running
 
     def start(self, name: str, arguments: Iterable[Value] = ()) -> Root:
-        """Start an instance of a schema (or of a basic process) beside what runs; its results are
-        collected.
-        """
+        """Start an instance of a schema (or of a basic process) beside what runs; its results are collected."""
         values = tuple(arguments)
         names = self._result_names(name, values)
         parameters = tuple(f"argument {i + 1}" for i in range(len(values)))
@@ -134,6 +130,11 @@ class Executer:
             rendezvous=kernel.rendezvous,
             zeno=kernel.zeno,
         )
+
+    @property
+    def processes_live(self) -> int:
+        """Strands alive: one figure of the statistics, for those who ask after every step."""
+        return self._kernel.live
 
     @property
     def definitions(self) -> tuple[str, ...]:

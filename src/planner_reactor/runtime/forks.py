@@ -1,9 +1,9 @@
 """The instructions that bring `|`, `&`, `#` and `::` to life, and those that end their parts.
 
-A fork makes one strand for each part; they share the frame, since siblings bind different names (static
-check), except that the bodies of `::` have a copy each. The strand that met the fork goes on when it is
-decided: `|` and `&` with their last part (N4, N4'), `#` by a verdict of the kernel (N5), `::` when its head
-has aborted and all bodies have ended (N8).
+A fork makes one strand for each part; they share the frame, since siblings bind different names (static check), except
+that the bodies of `::` have a copy each. The strand that met the fork goes on when it is decided: `|` and `&` with
+their last part (N4, N4'), `#` by a verdict of the kernel (N5), `::` when its head has aborted and all bodies have
+ended (N8).
 """
 
 from __future__ import annotations
@@ -94,9 +94,7 @@ def open_fork(instruction: ForkParts | ForkSpawn, strand: Strand, *, first: bool
 
 
 class PartEnd:
-    """A part of `|` or `&` has ended with this outcome; a stop `settles` the outcome of `|`, an abort that
-    of `&`.
-    """
+    """A part of `|` or `&` has ended with this outcome; a stop `settles` the outcome of `|`, an abort that of `&`."""
 
     __slots__ = ("kernel", "ok", "settles")
     silent = True

@@ -1,8 +1,8 @@
 """What a host module is written with: it brings a world to a text.
 
-A host registers basic processes (R §9.1: atomic processes that command servers and return results), pure
-functions for expressions, and assumptions: what the sensors say of each (holds, fails, unknown). Nothing in
-a text can reach other host code. Every basic process declares its age window, or a limit, in seconds.
+A host registers basic processes (R §9.1: atomic processes that command servers and return results), pure functions for
+expressions, and assumptions: what the sensors say of each (holds, fails, unknown). Nothing in a text can reach other
+host code. Every basic process declares its age window, or a limit, in seconds.
 
     host = Host("cell")
 
@@ -89,11 +89,10 @@ class Host:
     ) -> Callable[[Routine], Routine]:
         """Register a function, a generator function or a coroutine function as a basic process.
 
-        Parameters annotated `float` or `int` take numbers, `str` symbols, any other a value of any kind.
-        What it returns are its results: None for none, a tuple for several. It ends at an age within
-        `window`; if it would end earlier, it ends at the window's beginning. After `limit` seconds (the
-        window's end, if not given) it is abandoned and aborts. `abandon(*arguments)` is called once if it
-        is aborted from outside while it runs.
+        Parameters annotated `float` or `int` take numbers, `str` symbols, any other a value of any kind. What it
+        returns are its results: None for none, a tuple for several. It ends at an age within `window`; if it would end
+        earlier, it ends at the window's beginning. After `limit` seconds (the window's end, if not given) it is
+        abandoned and aborts. `abandon(*arguments)` is called once if it is aborted from outside while it runs.
         """
 
         def register(routine: Routine) -> Routine:

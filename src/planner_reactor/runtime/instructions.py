@@ -1,9 +1,8 @@
-"""The silent instructions: calls, returns, loops, forks, and the ends of what they began.
+"""The silent instructions: calls, returns, rounds, and the ends of what they began.
 
-`;` `:` `~` and `if` need none: they are compiled into where a process goes on when it stops (`ok`) and when
-it aborts (`ab`). A call that is no tail call pushes one tuple; a tail call, a loop and a round push none,
-so that they run in constant space. Rounds and calls are counted for the Zeno budget: no process is without
-end that has neither.
+`;` `:` `~` and `if` need none: they are compiled into where a process goes on when it stops (`ok`) and when it aborts
+(`ab`). A call that is no tail call pushes one tuple; a tail call and a round push none, so that they run in constant
+space. What forks is in `forks`.
 """
 
 from __future__ import annotations
@@ -170,11 +169,10 @@ class RootEnd:
 class Round:
     """N8. `A:;B = A : ([B]_{} ; (A:;B))`: B has ended, however; A again, with fresh results."""
 
-    __slots__ = ("head", "kernel", "slots", "where")
+    __slots__ = ("head", "slots", "where")
     silent = True
 
-    def __init__(self, kernel: Kernel, where: Where) -> None:
-        self.kernel = kernel
+    def __init__(self, where: Where) -> None:
         self.slots: tuple[int, ...] = ()
         self.head: Instruction = self
         self.where = where

@@ -1,13 +1,12 @@
 """The kernel: runs strands through linked instructions, in the order that the semantics asks for.
 
-First everything *silent*: strands are advanced to their next leaves and endings are passed on, until
-nothing is left; then one verdict of a `#`, innermost first, leftmost among equals (N5), and again what is
-silent; then the ready strands, first in first out, each for a slice of instructions; then time (rule TIME,
-maximal progress). Neither endings nor killing (N9) recurse: both keep explicit queues.
+First everything *silent*: strands are advanced to their next leaves and endings are passed on, until nothing is left;
+then one verdict of a `#`, innermost first, leftmost among equals (N5), and again what is silent; then the ready
+strands, first in first out, each for a slice of instructions; then time (rule TIME, maximal progress). Neither endings
+nor killing (N9) recurse: both keep explicit queues.
 
-One rule makes the inner loop short: **an instruction that leaves anything silent behind queues its own
-strand as silent too and returns None**. So whenever `run` returns an instruction, nothing else is due
-before it.
+One rule makes the inner loop short: **an instruction that leaves anything silent behind queues its own strand as
+silent too and returns None**. So whenever `run` returns an instruction, nothing else is due before it.
 """
 
 from __future__ import annotations
@@ -89,9 +88,7 @@ class Kernel:
         self.advance(strand, following)
 
     def _retry(self, strand: Strand) -> None:
-        """The control in which the strand waits is started again: it cannot be put off, it knows the
-        strand.
-        """
+        """The control in which the strand waits is started again: it cannot be put off, it knows the strand."""
         strand.state = RUNNING
         if (following := strand.pc.run(strand)) is not None:
             self.turn(strand, following)

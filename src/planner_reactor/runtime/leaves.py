@@ -1,8 +1,7 @@
-"""The leaves that the executer knows itself: tests, choices, delays, NIL; and the one that runs any
-`Control`.
+"""The leaves that the executer knows itself: tests, choices, delays, NIL; and the one that runs any `Control`.
 
-Running a leaf is a step. A leaf whose arguments have no value is one step too, which aborts with cause
-`error` (`Mistake`). Ports are in `ports`.
+Running a leaf is a step. A leaf whose arguments have no value is one step too, which aborts with cause `error`
+(`Mistake`). Ports are in `ports`.
 """
 
 from __future__ import annotations
@@ -38,9 +37,7 @@ class Setting:
 
 
 class Mistake:
-    """A call whose arguments have no value, or that no clause answers: one step, which aborts (cause
-    error).
-    """
+    """A call whose arguments have no value, or that no clause answers: one step, which aborts (cause error)."""
 
     __slots__ = ("ab", "kernel", "name", "where")
     silent = False
@@ -194,7 +191,7 @@ def at_most(age: float, kernel: Kernel) -> float:
 class Never:
     """NIL: neither stops nor aborts."""
 
-    __slots__ = "where"
+    __slots__ = ("where",)
     silent = False
     resting = True
 
@@ -213,8 +210,8 @@ class Never:
 class Use:
     """A leaf that runs a `Control`; if it opens a body, `slot` is where the frame keeps that body.
 
-    Without a slot nothing follows it, and there is no body; before `::` the body is that of the spawned
-    strand (`spawns`), which finds the context in `value`.
+    Without a slot nothing follows it, and there is no body; before `::` the body is that of the spawned strand
+    (`spawns`), which finds the context in `value`.
     """
 
     __slots__ = ("_announces", "_arguments", "_start", "ab", "close", "control", "kernel", "name", "ok",

@@ -1,9 +1,8 @@
 """What a leaf may do: the outcome of a process, and the face of a built-in process (`Control`).
 
-A `Control` is a process that the executer offers to programs but does not know: the reactor's processes of
-R Tables 1 and 2 are controls, and so is each basic process of a host. An abort carries a cause for traces
-and perceptions (failed, withdrawn, assumption, stub, budget, cancelled, error); the algebra sees only stop
-or abort.
+A `Control` is a process that the executer offers to programs but does not know: the reactor's processes of R Tables 1
+and 2 are controls, and so is each basic process of a host. An abort carries a cause for traces and perceptions
+(failed, withdrawn, assumption, stub, budget, cancelled, error); the algebra sees only stop or abort.
 """
 
 from __future__ import annotations
@@ -41,10 +40,9 @@ STOPPED = Outcome(True)
 class Control(Protocol):
     """A process that the executer runs without knowing what it means.
 
-    `opens_body`: what follows it by `;` `:` `:;` `::` is the body of what it delivered (SIT). `guards`: as
-    a direct part of a `#` it labels the other parts (E). `resting`: a process that waits here is not in
-    service; may be a function of the strand. `announces`: to begin to wait is a step that observers see,
-    with status "wait".
+    `opens_body`: what follows it by `;` `:` `:;` `::` is the body of what it delivered (SIT). `guards`: as a direct
+    part of a `#` it labels the other parts (E). `resting`: a process that waits here is not in service; may be a
+    function of the strand. `announces`: to begin to wait is a step that observers see, with status "wait".
     """
 
     @property
@@ -66,14 +64,10 @@ class Control(Protocol):
     def announces(self) -> bool: ...
 
     def start(self, strand: Strand, arguments: tuple[Value, ...]) -> Outcome | None:
-        """Begin, or try again after `Executer.wake`. None: it waits, until `Executer.end` (which it may
-        call here).
-        """
+        """Begin, or try again after `Executer.wake`. None: it waits, until `Executer.end` (which it may call here)."""
 
     def cancel(self, strand: Strand) -> None:
-        """The strand was aborted while it waited here (N9). Called exactly once, and never after it has
-        ended.
-        """
+        """The strand was aborted while it waited here (N9). Called exactly once, and never after it has ended."""
 
 
 class OpensBody(Control, Protocol):
@@ -90,6 +84,4 @@ class Guards(Control, Protocol):
     """A control with `guards`."""
 
     def guard_set(self, label: Value, strand: Strand, siblings: tuple[Strand, ...]) -> None:
-        """A `#` with this guard came to life: `strand` will wait in the guard, `siblings` are the other
-        parts.
-        """
+        """A `#` with this guard came to life: `strand` will wait in the guard, `siblings` are the other parts."""

@@ -1,8 +1,8 @@
 """Ports and rendezvous: IN[p]<x> and OUT[p,v] (rule COM).
 
-A write and a read meet pairwise, first come first served on both sides: at any time only one side waits.
-Those who wait are linked through the strands themselves, so that one that is aborted leaves in constant
-time and an idle port costs next to nothing.
+A write and a read meet pairwise, first come first served on both sides: at any time only one side waits. Those who
+wait are linked through the strands themselves, so that one that is aborted leaves in constant time and an idle port
+costs next to nothing.
 """
 
 from __future__ import annotations

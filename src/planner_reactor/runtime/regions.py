@@ -1,7 +1,7 @@
 """Regions of names: which slot of the frame a name has, and which names leave a process.
 
-`exported` follows the rules of `semantics.md`: what a process binds leaves it, except that the bodies of
-loops hide theirs (N8); what a definition binds does not reach this far, for a call binds its results only.
+`exported` follows the rules of `semantics.md`: what a process binds leaves it, except that the bodies of loops hide
+theirs (N8); what a definition binds does not reach this far, for a call binds its results only.
 """
 
 from __future__ import annotations
@@ -10,9 +10,7 @@ from planner_reactor.rs.terms import Call, Loop, Process, Spawn, operands
 
 
 class Region:
-    """Names and their slots, inside another region or at the top of a frame. `size` is that of the whole
-    frame.
-    """
+    """Names and their slots, inside another region or at the top of a frame. `size` is that of the whole frame."""
 
     __slots__ = ("_frame", "_outer", "_slots")
 

@@ -1,7 +1,7 @@
 """Is anything of a reaction in service? What a guard may be killed over (R §5.5, rule KILL).
 
-A reaction is at rest when each of its leaves waits in a control that says so (SIT, a queued ASSERT), or
-stands in the condition of an outermost loop (it senses); a round of a loop, and a body, are in service.
+A reaction is at rest when each of its leaves waits in a control that says so (SIT, a queued ASSERT), or stands in the
+condition of an outermost loop (it senses); a round of a loop, and a body, are in service.
 """
 
 from __future__ import annotations
@@ -33,9 +33,7 @@ def _rests(strand: Strand) -> bool:
 
 
 def _zone(strand: Strand) -> int:
-    """Where the strand stands: decided by the outermost call that is in a loop, else by its own
-    instruction.
-    """
+    """Where the strand stands: decided by the outermost call that is in a loop, else by its own instruction."""
     zones: list[int] = []
     stack: Stack | None = strand.stack
     while stack is not None:

@@ -1,12 +1,11 @@
 """One scheduler owns time, order and randomness; everything that runs, runs in its loop.
 
-Actions that are due `soon` (at the present instant) come first, in order; then what waits for an instant,
-by time and, among equal times, first come first served. `post` is the one door for other threads. Random
-numbers come from named streams seeded from the scheduler's seed, so that a draw in one place never shifts
-those of another, and a run depends on its seed alone. It knows nothing of processes.
+Actions that are due `soon` (at the present instant) come first, in order; then what waits for an instant, by time and,
+among equal times, first come first served. `post` is the one door for other threads. Random numbers come from named
+streams seeded from the scheduler's seed, so that a draw in one place never shifts those of another, and a run depends
+on its seed alone. It knows nothing of processes.
 
-What waits is kept in one bucket per instant, and only the instants in a heap: periods and rounds make many
-coincide.
+What waits is kept in one bucket per instant, and only the instants in a heap: periods and rounds make many coincide.
 """
 
 from __future__ import annotations
@@ -71,9 +70,7 @@ class Timer:
 
 
 class Scheduler:
-    """Runs actions in order of time. `now` is the present instant in seconds; it stands still while actions
-    run.
-    """
+    """Runs actions in order of time. `now` is the present instant in seconds; it stands still while actions run."""
 
     __slots__ = ("_buckets", "_instants", "_present", "_soon", "_stale", "_stopped", "_streams", "_sweep_at",
                  "clock", "now", "seed")  # fmt: skip
@@ -154,8 +151,8 @@ class Scheduler:
     def run(self, until: float | None = None) -> None:
         """Run what is due, in order, up to and including the instant `until`.
 
-        Returns when that instant is reached, when `stop` was called, or (virtual clock) when nothing is
-        left to do. On the wall clock without `until` it waits for what is posted, until `stop`.
+        Returns when that instant is reached, when `stop` was called, or (virtual clock) when nothing is left to do. On
+        the wall clock without `until` it waits for what is posted, until `stop`.
         """
         self._stopped = False
         limit = END_OF_TIME if until is None else until

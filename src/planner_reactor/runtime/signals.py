@@ -1,9 +1,8 @@
 """What a host's processes wait for: signals, and time.
 
-In a generator: `value = yield signal`, `fired = yield signal.within(seconds)`, `yield seconds`. In a
-coroutine the same with `await signal`, `await signal.within(seconds)`, `await sleep(seconds)`. A signal is
-a moment, not a state: `fire` wakes those who wait at that moment, in the order in which they came, and is
-forgotten.
+In a generator: `value = yield signal`, `fired = yield signal.within(seconds)`, `yield seconds`. In a coroutine the
+same with `await signal`, `await signal.within(seconds)`, `await sleep(seconds)`. A signal is a moment, not a state:
+`fire` wakes those who wait at that moment, in the order in which they came, and is forgotten.
 """
 
 from __future__ import annotations
@@ -24,9 +23,7 @@ class Waiter(Protocol):
 
 
 class Signal:
-    """Something that happens now and then. Fire it from the scheduler's thread only (others:
-    `Scheduler.post`).
-    """
+    """Something that happens now and then. Fire it from the scheduler's thread only (others: `Scheduler.post`)."""
 
     __slots__ = ("_waiters", "name")
 

@@ -1,9 +1,9 @@
 """What is alive while a program runs: strands, the forks that join them, bodies in service, roots.
 
-A *strand* is one sequential thread of a process: where it stands (`pc`), its bindings (`frame`), the calls
-to return to (`stack`, linked tuples). A *fork* is one `|`, `&`, `#` or `::` that came to life; the strand
-that met it waits until it is decided. Links are cleared as soon as a strand ends, so that no cyclic garbage
-arises. Instructions are known here only by what a strand needs of them.
+A *strand* is one sequential thread of a process: where it stands (`pc`), its bindings (`frame`), the calls to return
+to (`stack`, linked tuples). A *fork* is one `|`, `&`, `#` or `::` that came to life; the strand that met it waits
+until it is decided. Links are cleared as soon as a strand ends, so that no cyclic garbage arises. Instructions are
+known here only by what a strand needs of them.
 """
 
 from __future__ import annotations
@@ -44,9 +44,7 @@ Stack: TypeAlias = tuple[Any, Frame, "Caller", int]
 
 @dataclass(frozen=True, slots=True)
 class Where:
-    """Where an instruction stands: in which definition, in which zone of it, and (leaves) where in the
-    text.
-    """
+    """Where an instruction stands: in which definition, in which zone of it, and (leaves) where in the text."""
 
     within: str = ""
     zone: int = OUTSIDE
@@ -100,7 +98,7 @@ class Strand:
         self.guard: Value | None = None
         self.meter: Body | Root = root
         self.cause = ""
-        self.link: Any = None  # what it waits for: a fork, a port, the ticket of a timer, a control's own
+        self.link: Any = None  # what it waits for: a fork, a port, an entry of the scheduler, a control's own
         self.value: Value = None  # what a writer offers; what a control delivered to the body that follows
         self.before: Strand | None = None  # neighbours in the queue of a port
         self.after: Strand | None = None
@@ -134,8 +132,7 @@ class Strand:
 class Fork:
     """A `|`, `&`, `#` or `::` that came to life.
 
-    `parts` by index, None where one is over; for `::` that is its head, and `bodies` holds what it has
-    spawned.
+    `parts` by index, None where one is over; for `::` that is its head, and `bodies` holds what it has spawned.
     """
 
     __slots__ = (
@@ -194,8 +191,8 @@ class Exits(Protocol):
 class Body:
     """What follows a control that opens bodies, while it runs: a served instance, in the reactor.
 
-    `context` is the control's own; `parent` the body around it; `outcome` is None while it runs, then
-    "stop", "abort", or "killed" if it was aborted from outside.
+    `context` is the control's own; `parent` the body around it; `outcome` is None while it runs, then "stop", "abort",
+    or "killed" if it was aborted from outside.
     """
 
     __slots__ = (
@@ -237,9 +234,7 @@ class Body:
 
 
 class Root:
-    """A process that was started: `outcome` is None, "stop" or "abort"; `results` by name, once it has
-    ended.
-    """
+    """A process that was started: `outcome` is None, "stop" or "abort"; `results` by name, once it has ended."""
 
     __slots__ = ("cause", "instant", "name", "number", "outcome", "results", "strand", "turns")
 

@@ -1,8 +1,8 @@
 """Expressions compiled to closures over a frame: what `rs.expressions.evaluate` says, faster.
 
-The closures treat the commonest forms (constants, variables, `+` and `-` of a number) themselves and leave
-everything else, every error included, to `evaluate`, so that there is one meaning of expressions. What has
-no value raises `EvaluationError`.
+The closures treat the commonest forms (constants, variables, `+` and `-` of a number) themselves and leave everything
+else, every error included, to `evaluate`, so that there is one meaning of expressions. What has no value raises
+`EvaluationError`.
 """
 
 from __future__ import annotations

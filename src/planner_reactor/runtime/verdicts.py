@@ -1,8 +1,8 @@
 """Which `#` is decided next, and how (N5).
 
-When everything silent is done, the `#`s of which a part has ended are decided one at a time: the innermost
-first (most `#`s around it), leftmost among equals; each verdict may end others, or make them void. One is
-the rule, several are rare: only then are they ranked.
+When everything silent is done, the `#`s of which a part has ended are decided one at a time: the innermost first (most
+`#`s around it), leftmost among equals; each verdict may end others, or make them void. One is the rule, several are
+rare: only then are they ranked.
 """
 
 from __future__ import annotations
