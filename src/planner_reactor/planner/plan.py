@@ -106,6 +106,7 @@ class Plan:
     links: list[Link] = field(default_factory=list)
     uses: list[Use] = field(default_factory=list)
     distinct: list[tuple[Term, Term]] = field(default_factory=list)
+    assumed: list[Atom] = field(default_factory=list)  # assumptions whose arguments were still open
     variables: int = 0
     first: int = 0
 
@@ -146,10 +147,12 @@ class Plan:
             len(self.links),
             len(self.uses),
             len(self.distinct),
+            len(self.assumed),
         )
 
     def undo(self, mark: tuple[int, ...]) -> None:
-        bindings, network, steps, links, uses, distinct = mark
+        bindings, network, steps, links, uses, distinct, assumed = mark
         self.bindings.undo(bindings)
         self.network.undo(network)
-        del self.steps[steps:], self.links[links:], self.uses[uses:], self.distinct[distinct:]
+        del self.steps[steps:], self.links[links:], self.uses[uses:]
+        del self.distinct[distinct:], self.assumed[assumed:]

@@ -150,7 +150,7 @@ class Search:
         """Is everything named that must be, and does every result come before its use?"""
         plan, problem = self.plan, self.problem
         walk = plan.bindings.walk
-        if any(_is_nameless(walk(term)) for term in problem.outputs):
+        if any(_is_nameless(walk(term)) for term in problem.outputs) or not self._supports.settle_assumed():
             return False
         if any(walk(one) == walk(other) for one, other in plan.distinct) or self._threats.spoils_itself():
             return False

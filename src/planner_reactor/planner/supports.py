@@ -8,7 +8,7 @@ after all; the caller undoes what it left.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 from functools import partial
 from typing import TypeAlias
@@ -130,11 +130,8 @@ class Supports:
         if not plan.bindings.unify(goal.atom.arguments, rule.head.shifted(offset).arguments):
             return None
         if rule.assumptions:
-            answer = self.problem.beliefs.assume((a.shifted(offset) for a in rule.assumptions), plan.bindings)
-            self.consulted.missing |= answer.missing
-            if not answer.holds:
+            if not self.assume(a.shifted(offset) for a in rule.assumptions):
                 return None
-            plan.uses.extend(Use(name, True) for name in sorted(answer.used))
             plan.links.append(Link(goal.atom, START, goal.consumer, goal.condition, derived=True))
         for one, other in rule.distinct:
             pair = Atom("", (one, other)).shifted(offset).arguments
@@ -179,14 +176,35 @@ class Supports:
         for atom in step.schema.applicability:
             ground = bindings.ground(atom.shifted(step.offset))
             if atom.predicate in beliefs.domain.assumptions:
-                answer = beliefs.assume((ground,))
-                self.consulted.missing |= answer.missing
-                if not answer.holds:
+                if not self.assume((ground,)):
                     return False
-                self.plan.uses.extend(Use(name, True) for name in sorted(answer.used))
             elif not self._is_known(ground):
                 return False
         return True
+
+    def assume(self, atoms: Iterable[Atom]) -> bool:
+        """Rest the plan on these assumptions, if they hold; one whose arguments are still open
+        waits for them.
+        """
+        plan, told = self.plan, []
+        for atom in atoms:
+            ground = plan.bindings.ground(atom)
+            if any(type(argument) is int for argument in ground.arguments):
+                plan.assumed.append(ground)
+            else:
+                told.append(ground)
+        answer = self.problem.beliefs.assume(told)
+        self.consulted.missing |= answer.missing
+        plan.uses.extend(Use(name, True) for name in sorted(answer.used))
+        return answer.holds
+
+    def settle_assumed(self) -> bool:
+        """Do the assumptions hold whose arguments were open? What is still open means all."""
+        plan = self.plan
+        answer = self.problem.beliefs.assume(plan.assumed, plan.bindings)
+        self.consulted.missing |= answer.missing
+        plan.uses.extend(Use(name, True) for name in sorted(answer.used))
+        return answer.holds
 
     def _is_known(self, atom: Atom) -> bool:
         told = self.problem.beliefs.known(atom)
