@@ -38,11 +38,11 @@ _ASSERTS = re.compile(r"ASSERT\[(\w+)")
 def signatures(domain: Domain) -> dict[str, Signature]:
     """What a host for the domain would declare."""
     found = dict(BUILT_IN)
+    anything: Kind = "any"
     for schema in domain.schemas.values():
         if not schema.abstract:
             results = tuple(schema.variables[v] for v in schema.outputs)
-            inputs: tuple[Kind, ...] = ("any",) * len(schema.inputs)
-            found[schema.name] = Signature(schema.name, inputs, results)
+            found[schema.name] = Signature(schema.name, (anything,) * len(schema.inputs), results)
     return found
 
 
