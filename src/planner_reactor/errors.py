@@ -14,12 +14,12 @@ A process that *aborts* is an outcome of the language, never one of these.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 from difflib import get_close_matches
 
+import msgspec
 
-@dataclass(frozen=True, slots=True)
-class Place:
+
+class Place(msgspec.Struct, frozen=True):
     """Where something stands in a text: line and column count from 1."""
 
     line: int
@@ -30,8 +30,7 @@ class Place:
         return f"{self.file}:{self.line}:{self.column}"
 
 
-@dataclass(frozen=True, slots=True)
-class Diagnostic:
+class Diagnostic(msgspec.Struct, frozen=True):
     """One finding about a text.
 
     `code` is a short stable name (`unknown-process`), `hint` says what was expected or the nearest name.

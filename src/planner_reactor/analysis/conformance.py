@@ -7,7 +7,8 @@ that an observer of a run sees, and the time that passes; where nothing fits, th
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import replace
+
+from msgspec.structs import replace
 
 from planner_reactor.errors import BudgetError, PlannerReactorError
 from planner_reactor.rs.configurations import Config, Ending, Label, Oracle, World

@@ -8,7 +8,8 @@ this kind. Causes of aborts and where a term stood in the text are not seen.
 from __future__ import annotations
 
 from collections.abc import Hashable
-from dataclasses import dataclass
+
+import msgspec
 
 from planner_reactor.analysis.explore import canonical, successors
 from planner_reactor.errors import BudgetError
@@ -18,8 +19,7 @@ from planner_reactor.rs.states import Ended
 from planner_reactor.rs.terms import Process
 
 
-@dataclass(frozen=True, slots=True)
-class Behaviour:
+class Behaviour(msgspec.Struct, frozen=True):
     """A finite labelled transition system: `moves[i]` are the (label, state) pairs of state i; 0 is the first."""
 
     moves: tuple[tuple[tuple[Label, int], ...], ...]

@@ -8,38 +8,41 @@ with a *shortest* path. This is the plain reading of `rs.evolves`: no reduction,
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, field, fields, is_dataclass, replace
 from math import inf
 from typing import Any
 
+import msgspec
+from msgspec.structs import replace
+
 from planner_reactor.rs.configurations import Config, Label, World
 from planner_reactor.rs.leaves import Step, elapsed, slack, steps, window
-from planner_reactor.rs.states import InstanceNumber, Leaf
+from planner_reactor.rs.states import Ended, InstanceNumber, Leaf
 
 Invariant = Callable[[Config, Step], bool]
 """Asked with the configuration before a step and the step: does the law hold?"""
 
 
-@dataclass(frozen=True, slots=True)
-class Violation:
+class Violation(msgspec.Struct, frozen=True):
     """A law that a reachable step breaks, and the labels of a shortest path to it (that step included)."""
 
     law: str
     path: tuple[Label, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class Exploration:
+class Exploration(msgspec.Struct, frozen=True):
     """Every state reached, in the order of a shortest way to it, with its moves (label, number of the next state).
 
     `complete` is False if the limit on states was reached, or a violation stopped the exploration, first.
     """
 
-    states: tuple[Config, ...] = field(repr=False)
-    moves: tuple[tuple[tuple[Label, int], ...], ...] = field(repr=False)
+    states: tuple[Config, ...]
+    moves: tuple[tuple[tuple[Label, int], ...], ...]
     violations: tuple[Violation, ...]
     complete: bool
-    came_from: Mapping[int, tuple[int, Label]] = field(repr=False)
+    came_from: Mapping[int, tuple[int, Label]]
+
+    def __repr__(self) -> str:
+        return f"Exploration({len(self.states)} states, complete={self.complete}, {list(self.violations)})"
 
     @property
     def ends(self) -> tuple[int, ...]:
@@ -144,11 +147,13 @@ def _renumbered(value: Any, names: Mapping[InstanceNumber, InstanceNumber]) -> A
         return names.get(value, InstanceNumber(0))
     if isinstance(value, tuple):
         return tuple(_renumbered(v, names) for v in value)
-    if is_dataclass(value) and not isinstance(value, type):
+    if isinstance(value, Ended):
+        return Ended(value.ok, _renumbered(value.bindings, names), value.cause)
+    if isinstance(value, msgspec.Struct):
         changes = {}
-        for member in fields(value):
-            old = getattr(value, member.name)
+        for name in value.__struct_fields__:
+            old = getattr(value, name)
             if (new := _renumbered(old, names)) is not old and new != old:
-                changes[member.name] = new
+                changes[name] = new
         return replace(value, **changes) if changes else value
     return value

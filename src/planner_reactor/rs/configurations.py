@@ -7,8 +7,10 @@ A `Config` is a tuple of running roots (a program, or a reactor and the scripts 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass, field, replace
 from typing import TypeAlias
+
+import msgspec
+from msgspec.structs import replace
 
 from planner_reactor.rs.prelude import PRELUDE
 from planner_reactor.rs.states import Run, Spot, put, spots
@@ -25,13 +27,12 @@ Oracle: TypeAlias = Callable[[str, tuple[Value, ...]], Iterable[Ending]]
 """How a basic process may end, with which values: concrete runs are deterministic but for this."""
 
 
-@dataclass(frozen=True, slots=True)
-class World:
+class World(msgspec.Struct, frozen=True):
     """What a configuration evolves under: definitions, signatures of the leaves, functions, endings."""
 
-    program: Program = field(default_factory=Program)
-    signatures: Mapping[str, Signature] = field(default_factory=lambda: BUILT_IN)
-    functions: Functions = field(default_factory=dict)
+    program: Program = msgspec.field(default_factory=Program)
+    signatures: Mapping[str, Signature] = msgspec.field(default_factory=lambda: BUILT_IN)
+    functions: Functions = msgspec.field(default_factory=dict)
     endings: Oracle = lambda name, arguments: [(True, ()), (False, ())]
     spawned: frozenset[str] = frozenset()  # situations served by `::`: they may be asserted from below themselves
 
@@ -42,12 +43,11 @@ class World:
         return bool(self.program.clauses(name) or PRELUDE.clauses(name))
 
 
-@dataclass(frozen=True, slots=True)
-class Config:
+class Config(msgspec.Struct, frozen=True):
     """The running roots, in order of their start, and the store that they share."""
 
     roots: tuple[tuple[int, Run], ...] = ()
-    store: Store = field(default_factory=Store)
+    store: Store = msgspec.field(default_factory=Store)
 
     def root(self, number: int) -> Run:
         return next(term for n, term in self.roots if n == number)

@@ -14,7 +14,8 @@ leftmost among equals, the `#`s of which a part has ended.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
+
+from msgspec.structs import replace
 
 from planner_reactor.errors import BudgetError
 from planner_reactor.rs.configurations import Config, World

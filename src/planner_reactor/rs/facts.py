@@ -9,6 +9,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
+import msgspec
+
 from planner_reactor.errors import Place
 from planner_reactor.rs.terms import (
     Apply,
@@ -26,8 +28,7 @@ from planner_reactor.rs.terms import (
 )
 
 
-@dataclass(frozen=True, slots=True)
-class Service:
+class Service(msgspec.Struct, frozen=True):
     """A loop that serves the instances of a situation, `SIT[s]<k, …> :; body` or `::`."""
 
     sit: Call

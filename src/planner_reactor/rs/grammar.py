@@ -19,9 +19,10 @@ token each.
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Literal, TypeAlias
+
+import msgspec
 
 from planner_reactor.rs.terms import All, Cond, Disable, If, Loop, Not, Par, Process, Seq, Spawn
 
@@ -29,8 +30,7 @@ Joining: TypeAlias = Literal["flat", "right", "left", "once", "prefix"]
 """How an operator meets itself: "flat" is n-ary, "once" may not be chained."""
 
 
-@dataclass(frozen=True, slots=True)
-class Operator:
+class Operator(msgspec.Struct, frozen=True):
     """One operator on processes. `bare` are the terms that the printer leaves without parentheses below it:
     fewer than the strengths allow, since mixtures of `:` and `;`, loops and `#` are easily misread
     (`semantics`)."""
@@ -54,8 +54,7 @@ PROCESS_OPERATORS = (
 )
 
 
-@dataclass(frozen=True, slots=True)
-class Arithmetic:
+class Arithmetic(msgspec.Struct, frozen=True):
     """One operator on expressions. `-` before an expression is as strong as `PREFIX_MINUS`."""
 
     sign: str

@@ -9,7 +9,8 @@ which calls they make before their first step, clause by clause.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+
+import msgspec
 
 from planner_reactor.errors import Diagnostic
 from planner_reactor.rs.graphs import cycles, solve, way_round
@@ -31,8 +32,7 @@ from planner_reactor.rs.terms import (
 )
 
 
-@dataclass(frozen=True, slots=True)
-class Silent:
+class Silent(msgspec.Struct, frozen=True):
     """How a process may end without a step."""
 
     stops: bool = False

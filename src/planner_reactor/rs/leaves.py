@@ -8,9 +8,11 @@ gives the label that an observer sees and the configuration afterwards, settled.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
 from math import inf
 from typing import TypeAlias
+
+import msgspec
+from msgspec.structs import replace
 
 from planner_reactor.rs.configurations import Config, Label, World
 from planner_reactor.rs.evolves import settle
@@ -38,8 +40,7 @@ from planner_reactor.rs.terms import Value
 from planner_reactor.rs.tests import TESTS
 
 
-@dataclass(frozen=True, slots=True)
-class Step:
+class Step(msgspec.Struct, frozen=True):
     """One transition. `urgent` steps do not let time pass (maximal progress)."""
 
     label: Label

@@ -21,9 +21,12 @@ names that it uses, so that equal states are equal values.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import lru_cache
 from typing import Literal, TypeAlias
+
+import msgspec
+from msgspec.structs import replace
 
 from planner_reactor.errors import Place
 from planner_reactor.rs.terms import (
@@ -49,8 +52,7 @@ class InstanceNumber(int):
     """The number k of a situation instance: an integer that an explorer may rename consistently."""
 
 
-@dataclass(frozen=True, slots=True)
-class Reaction:
+class Reaction(msgspec.Struct, frozen=True):
     """The identity g of a reaction: the label of its guard, if any, and where its SIT stands in the text."""
 
     guard: Value | None
@@ -66,8 +68,7 @@ class Ended:
     cause: str = field(default="", compare=False)
 
 
-@dataclass(frozen=True, slots=True)
-class Delivered:
+class Delivered(msgspec.Struct, frozen=True):
     """A SIT that has just delivered an instance: what follows it, if anything, is the instance's body."""
 
     situation: str
@@ -76,8 +77,7 @@ class Delivered:
     bindings: Bindings
 
 
-@dataclass(frozen=True, slots=True)
-class Leaf:
+class Leaf(msgspec.Struct, frozen=True):
     """A basic or built-in process that has come to life.
 
     `age` in seconds; `opens` marks a SIT whose instance is served by what follows it; `problem` says why its
@@ -93,8 +93,7 @@ class Leaf:
     problem: str = ""
 
 
-@dataclass(frozen=True, slots=True)
-class Await:
+class Await(msgspec.Struct, frozen=True):
     """`await_{s,k}<x>`; `again` holds the leaf of a REASSERT, to be repeated should the instance fail."""
 
     instance: InstanceNumber
@@ -102,64 +101,55 @@ class Await:
     again: Leaf | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class Queued:
+class Queued(msgspec.Struct, frozen=True):
     """An ASSERT held back: `ticket` finds it in the store's queue."""
 
     ticket: InstanceNumber
     leaf: Leaf
 
 
-@dataclass(frozen=True, slots=True)
-class Waiting:
+class Waiting(msgspec.Struct, frozen=True):
     """A WAIT, WAITINHIBIT or DRAIN that has begun."""
 
     name: str
     situation: str
 
 
-@dataclass(frozen=True, slots=True)
-class Chain:
+class Chain(msgspec.Struct, frozen=True):
     operator: Literal[";", ":"]
     current: Run
     rest: Process
     scope: Bindings
 
 
-@dataclass(frozen=True, slots=True)
-class Keep:
+class Keep(msgspec.Struct, frozen=True):
     bindings: Bindings
     body: Run
 
 
-@dataclass(frozen=True, slots=True)
-class Export:
+class Export(msgspec.Struct, frozen=True):
     """Only the `renamed` results (inner name, outer name) leave the body; none, for the body of a loop."""
 
     renamed: tuple[tuple[str, str], ...]
     body: Run
 
 
-@dataclass(frozen=True, slots=True)
-class Group:
+class Group(msgspec.Struct, frozen=True):
     operator: Literal["|", "&", "#"]
     parts: tuple[Run, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class Inverted:
+class Inverted(msgspec.Struct, frozen=True):
     body: Run
 
 
-@dataclass(frozen=True, slots=True)
-class Deciding:
+class Deciding(msgspec.Struct, frozen=True):
     test: Run
     branches: If
     scope: Bindings
 
 
-@dataclass(frozen=True, slots=True)
-class Testing:
+class Testing(msgspec.Struct, frozen=True):
     """`A:;B` while A runs."""
 
     condition: Run
@@ -167,8 +157,7 @@ class Testing:
     scope: Bindings
 
 
-@dataclass(frozen=True, slots=True)
-class Round:
+class Round(msgspec.Struct, frozen=True):
     """`A:;B` while B runs."""
 
     body: Run
@@ -176,8 +165,7 @@ class Round:
     scope: Bindings
 
 
-@dataclass(frozen=True, slots=True)
-class Spawning:
+class Spawning(msgspec.Struct, frozen=True):
     """`A::B`: A runs, or has ended, beside the bodies spawned so far; `stopped` if an ended body has
     stopped."""
 
@@ -188,8 +176,7 @@ class Spawning:
     stopped: bool = False
 
 
-@dataclass(frozen=True, slots=True)
-class Serve:
+class Serve(msgspec.Struct, frozen=True):
     situation: str
     instance: InstanceNumber
     reaction: Reaction
@@ -204,8 +191,7 @@ Run: TypeAlias = (
 Path: TypeAlias = tuple[int, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class Spot:
+class Spot(msgspec.Struct, frozen=True):
     """A live leaf of a configuration: where it is, and what encloses it."""
 
     root: int

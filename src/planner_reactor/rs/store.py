@@ -11,8 +11,10 @@ name)`).
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
 from typing import Literal, TypeAlias
+
+import msgspec
+from msgspec.structs import replace
 
 from planner_reactor.rs.states import InstanceNumber, Reaction
 from planner_reactor.rs.terms import Value
@@ -22,8 +24,7 @@ Owner: TypeAlias = int | tuple[str, str]
 Kind: TypeAlias = Literal["inhibit", "drain", "assumption"]
 
 
-@dataclass(frozen=True, slots=True)
-class Instance:
+class Instance(msgspec.Struct, frozen=True):
     """(s, k, args, status, values, owner): one assertion of a situation."""
 
     number: InstanceNumber
@@ -38,8 +39,7 @@ class Instance:
     cause: str = ""
 
 
-@dataclass(frozen=True, slots=True)
-class Inhibition:
+class Inhibition(msgspec.Struct, frozen=True):
     """Nothing of the situation is served; `drain` and `assumption` also hold its ASSERTs back."""
 
     situation: str
@@ -47,8 +47,7 @@ class Inhibition:
     kind: Kind
 
 
-@dataclass(frozen=True, slots=True)
-class QueuedAssert:
+class QueuedAssert(msgspec.Struct, frozen=True):
     """An ASSERT held back; `fate` is set once it is released (its instance) or has failed (the cause)."""
 
     ticket: InstanceNumber
@@ -58,8 +57,7 @@ class QueuedAssert:
     fate: InstanceNumber | str | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class Store:
+class Store(msgspec.Struct, frozen=True):
     instances: tuple[Instance, ...] = ()  # I, oldest first
     inhibitions: tuple[Inhibition, ...] = ()  # H
     drains: tuple[tuple[str, int], ...] = ()  # D: situation, root
@@ -142,7 +140,7 @@ class Store:
         return replace(
             self,
             instances=tuple(
-                replace(i, **fields) if i.number == number else i for i in self.instances  # type: ignore[arg-type]
+                replace(i, **fields) if i.number == number else i for i in self.instances
             ),
         )
 

@@ -15,6 +15,8 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from typing import TypeAlias
 
+import msgspec
+
 from planner_reactor.errors import Place
 
 Value: TypeAlias = object
@@ -24,13 +26,11 @@ Value: TypeAlias = object
 # ---------------------------------------------------------------------------------------------- expressions
 
 
-@dataclass(frozen=True, slots=True)
-class Number:
+class Number(msgspec.Struct, frozen=True):
     value: int | float
 
 
-@dataclass(frozen=True, slots=True)
-class Text:
+class Text(msgspec.Struct, frozen=True):
     """A quoted string."""
 
     value: str
@@ -52,13 +52,11 @@ class Variable:
     place: Place | None = field(default=None, compare=False, repr=False)
 
 
-@dataclass(frozen=True, slots=True)
-class Negative:
+class Negative(msgspec.Struct, frozen=True):
     operand: Expression
 
 
-@dataclass(frozen=True, slots=True)
-class Operation:
+class Operation(msgspec.Struct, frozen=True):
     """`+ - * /` on numbers, `== /= < <= > >=` on values."""
 
     operator: str
@@ -91,66 +89,57 @@ class Call:
     place: Place | None = field(default=None, compare=False, repr=False)
 
 
-@dataclass(frozen=True, slots=True)
-class Seq:
+class Seq(msgspec.Struct, frozen=True):
     """`P;Q`: Q follows P, however P ended."""
 
     parts: tuple[Process, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class Cond:
+class Cond(msgspec.Struct, frozen=True):
     """`P:Q`: Q follows P if P stopped."""
 
     parts: tuple[Process, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class Par:
+class Par(msgspec.Struct, frozen=True):
     """`P|Q`: side by side; stops if at least one part stops."""
 
     parts: tuple[Process, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class All:
+class All(msgspec.Struct, frozen=True):
     """`P&Q`: side by side; stops only if every part stops."""
 
     parts: tuple[Process, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class Disable:
+class Disable(msgspec.Struct, frozen=True):
     """`P#Q`: side by side; the first part to end decides and the others are aborted."""
 
     parts: tuple[Process, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class Not:
+class Not(msgspec.Struct, frozen=True):
     """`~P`: stop and abort swapped."""
 
     body: Process
 
 
-@dataclass(frozen=True, slots=True)
-class Loop:
+class Loop(msgspec.Struct, frozen=True):
     """`A:;B`, synchronous recurrent: while A stops, do B."""
 
     condition: Process
     body: Process
 
 
-@dataclass(frozen=True, slots=True)
-class Spawn:
+class Spawn(msgspec.Struct, frozen=True):
     """`A::B`, asynchronous recurrent: whenever A stops, spawn a B and go on."""
 
     condition: Process
     body: Process
 
 
-@dataclass(frozen=True, slots=True)
-class If:
+class If(msgspec.Struct, frozen=True):
     """`if C then P else Q`: C decides once."""
 
     test: Process
@@ -211,8 +200,7 @@ def calls(process: Process) -> Iterator[Call]:
 # ------------------------------------------------------------------------------------- schemas and programs
 
 
-@dataclass(frozen=True, slots=True)
-class Parameter:
+class Parameter(msgspec.Struct, frozen=True):
     """A formal parameter of a definition's head: a bare name."""
 
     name: str

@@ -9,8 +9,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
 from itertools import islice
+
+import msgspec
 
 from planner_reactor.errors import Place, RSError
 from planner_reactor.rs.grammar import DEFINITION, TOKEN
@@ -19,8 +20,7 @@ from planner_reactor.rs.source import Source
 LONGEST_QUOTE = 40
 
 
-@dataclass(frozen=True, slots=True)
-class Budgets:
+class Budgets(msgspec.Struct, frozen=True):
     """What a text may ask for. A term has fewer parts than its text has tokens, so that `tokens` bounds both.
 
     `nesting` bounds what the parser has open at once (parentheses, prefixes, right operands), `depth` how
