@@ -23,7 +23,7 @@ FIFO = Budgets(turns=10**12, slice=1)
 STEPS = "P[n] = GTR[n, 0] : Nop : P[n - 1]"
 MEETINGS = """
 Write     = OUT[p, 1] :; STOP
-Read[n]   = IN[p]<x> : GTR[n, 0] : Read[n - 1]
+Read      = IN[p]<x> :; STOP
 Serve     = IN[p]<x> :; OUT[q, x]
 Ask[n]    = OUT[p, n] : IN[q]<x> : GTR[n, 0] : Ask[n - 1]
 """
@@ -79,10 +79,11 @@ def steps_in_turns_observed() -> tuple[float, int]:
     return steps(budgets=FIFO, observed=True)
 
 
-def rendezvous(count: int = 50_000) -> tuple[float, int]:
-    executer = Bench().executer(MEETINGS)
-    executer.start_process(parse_process(f"Read[{count}] # Write"))
-    seconds = timed(executer.run)
+def rendezvous(count: int = 100_000) -> tuple[float, int]:
+    """Two loops that meet; the budget of turns ends it."""
+    executer = Bench().executer(MEETINGS, Budgets(turns=count))
+    executer.start_process(parse_process("Read | Write"))
+    seconds = timed(lambda: executer.run(0.0))
     return seconds, executer.statistics().rendezvous
 
 
@@ -119,14 +120,14 @@ def reaction_latency(count: int, *, at: str, events: int = 2000) -> tuple[float,
     if at == "AtPorts":
         executer.start("Sensing", (count // 2,))
         executer.run(0.0)
-    draw = random.Random(count)
+    scheduler, draw = executer.scheduler, random.Random(count)
     latencies = []
     gc.collect()
     for _ in range(events):
         signal = bench.signals[count // 2 if at == "AtPorts" else draw.randrange(count)]
         begun = time.perf_counter()
         signal.fire()
-        executer.run(0.0)
+        scheduler.run(0.0)
         latencies.append(bench.acted[-1] - begun)
     return percentiles(latencies)
 

@@ -96,6 +96,8 @@ class Basic:
     # -- for its runs
 
     def returned(self, value: object) -> Outcome:
+        if value is None and self._nothing is not None:
+            return self._nothing
         values: tuple[Value, ...] = value if isinstance(value, tuple) else () if value is None else (value,)
         if len(values) != len(self.signature.results):
             self._kernel.note("error", name=self.name, message=f"returned {len(values)} values, "

@@ -73,8 +73,15 @@ class Kernel:
         meter.turns += 1
         if meter.turns > self.turns and meter.turns > self.turns + self.live:
             self.overrun(strand, pc)
-        else:
-            self.run(strand, pc)
+            return
+        strand.state = RUNNING
+        following: Instruction | None = pc
+        for _ in self._slice:  # as in `run`, which is for strands whose time has passed
+            following = following.run(strand)  # type: ignore[union-attr]  # never None here
+            if following is None:
+                return
+        meter.turns += self.budgets.slice - 1
+        self.advance(strand, following)
 
     def run(self, strand: Strand, pc: Instruction) -> None:
         """Let a strand run for a slice, or until it waits, forks, ends, or something else comes first."""
@@ -197,14 +204,6 @@ class Kernel:
         """A strand that waits for time is aborted."""
         strand.link = None
         self.scheduler.withdrawn()
-
-    def communicated(self, strand: Strand, pc: Instruction) -> bool:
-        """COM: take the partner on, within the step of the one that runs. Is nothing else due?"""
-        self.steps += 1
-        self.rendezvous += 1
-        strand.state = RUNNING
-        self.advance(strand, pc)
-        return not self.due
 
     def queue(self, strand: Strand, pc: Instruction) -> None:
         """The strand will be advanced from here within the present step."""

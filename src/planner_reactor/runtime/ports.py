@@ -10,7 +10,7 @@ from __future__ import annotations
 from planner_reactor.rs.expressions import EvaluationError
 from planner_reactor.rs.terms import Number, Symbol, Text, Value
 from planner_reactor.runtime.leaves import Setting
-from planner_reactor.runtime.strands import WAITING, Instruction, Strand
+from planner_reactor.runtime.strands import RUNNING, WAITING, Instruction, Strand
 
 SWEEP_FROM = 1024
 
@@ -35,6 +35,15 @@ class Port:
         else:
             last.after = strand
         self.last = strand
+
+    def serve(self, first: Strand) -> None:
+        """The first of those who wait has met its partner."""
+        self.first = after = first.after
+        if after is None:
+            self.last = None
+        else:
+            after.before = first.after = None
+        first.link = None
 
     def unlink(self, strand: Strand) -> None:
         before, after = strand.before, strand.after
@@ -113,17 +122,11 @@ class Out:
             strand.value = value
             port.append(strand)
             return None
-        port.unlink(reader)
+        port.serve(reader)
         leaf: In = reader.pc  # type: ignore[assignment]  # readers wait in an IN
         if leaf.target >= 0:
             reader.frame[leaf.target] = value
-        kernel = self.kernel
-        if kernel.observer is not None:
-            kernel.observer(("COM", (port.name, value), "ok", ()))
-        if kernel.communicated(reader, leaf.ok):
-            return self.ok
-        kernel.queue(strand, self.ok)
-        return None
+        return communicated(self, strand, reader, leaf, port.name, value)
 
     def cancel(self, strand: Strand) -> None:
         strand.link.unlink(strand)
@@ -158,18 +161,29 @@ class In:
             strand.state = WAITING
             port.append(strand)
             return None
-        port.unlink(writer)
+        port.serve(writer)
         value, writer.value = writer.value, None
         if self.target >= 0:
             strand.frame[self.target] = value
-        kernel = self.kernel
-        if kernel.observer is not None:
-            kernel.observer(("COM", (port.name, value), "ok", ()))
         leaf: Out = writer.pc  # type: ignore[assignment]  # writers wait in an OUT
-        if kernel.communicated(writer, leaf.ok):
-            return self.ok
-        kernel.queue(strand, self.ok)
-        return None
+        return communicated(self, strand, writer, leaf, port.name, value)
 
     def cancel(self, strand: Strand) -> None:
         strand.link.unlink(strand)
+
+
+def communicated(
+    own: In | Out, strand: Strand, partner: Strand, leaf: In | Out, name: Value, value: Value
+) -> Instruction | None:
+    """COM, a step of both: the partner is taken to its next leaf, then the one that came last goes on."""
+    kernel = own.kernel
+    kernel.steps += 1
+    kernel.rendezvous += 1
+    if kernel.observer is not None:
+        kernel.observer(("COM", (name, value), "ok", ()))
+    partner.state = RUNNING
+    kernel.advance(partner, leaf.ok)
+    if kernel.due:
+        kernel.queue(strand, own.ok)
+        return None
+    return own.ok
