@@ -15,7 +15,7 @@ from planner_reactor.link.messages import Adaptation, Change, Mode
 from planner_reactor.logic.formulas import Atom
 from planner_reactor.planner import reactions
 from planner_reactor.planner.beliefs import Beliefs
-from planner_reactor.planner.model import Model, Segment
+from planner_reactor.planner.model import Drafted, Model, Segment
 from planner_reactor.planner.situations import Refinement, Situation
 from planner_reactor.planner.structure import Action
 from planner_reactor.rs.terms import Process
@@ -33,8 +33,12 @@ class Draft:
     segment: Segment
     purpose: str
     assumption: str = ""
-    refinements: dict[Situation, Refinement] = field(default_factory=dict)
+    drafted: Drafted = field(default_factory=Drafted)
     waiting: list[Situation] = field(default_factory=list)
+
+    @property
+    def refinements(self) -> dict[Situation, Refinement]:
+        return self.drafted.refinements
 
 
 @dataclass(frozen=True, slots=True)
@@ -175,7 +179,7 @@ class Issuer:
 
     def _introduce(self, parts: _Parts, situation: Situation, path: tuple[int, ...], draft: Draft) -> None:
         refinement = draft.refinements.get(situation)
-        segment = self.model.new(situation, self.model.context(situation, draft.refinements.values()), path)
+        segment = self.model.new(situation, self.model.context(situation, draft.drafted), path)
         self.model.put(segment, refinement)
         if refinement is None:
             process = reactions.stub(situation, self.model.names, self.stub_ms)

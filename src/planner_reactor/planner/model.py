@@ -65,6 +65,19 @@ class Segment:
 
 
 @dataclass(slots=True)
+class Drafted:
+    """Refinements that are not in the model yet, and who calls what in them."""
+
+    refinements: dict[Situation, Refinement] = field(default_factory=dict)
+    calls: dict[Situation, dict[Situation, list[Child]]] = field(default_factory=dict)
+
+    def add(self, refinement: Refinement) -> None:
+        self.refinements[refinement.situation] = refinement
+        for child in refinement.children:
+            self.calls.setdefault(child.situation, {}).setdefault(refinement.situation, []).append(child)
+
+
+@dataclass(slots=True)
 class Model:
     """All segments, in the order in which they came up."""
 
@@ -80,7 +93,8 @@ class Model:
 
     def named(self, name: str) -> Segment | None:
         """The segment of the situation with this name."""
-        return next((s for s in self if s.name == name), None)
+        situation = self.names.situation(name)
+        return None if situation is None else self.segments.get(situation)
 
     def new(self, situation: Situation, context: Context, path: tuple[int, ...] = ()) -> Segment:
         """A segment that is not in the model yet; its version goes on from where a removed one ended."""
@@ -117,26 +131,24 @@ class Model:
     def callers(self, situation: Situation) -> tuple[Situation, ...]:
         return tuple(self._calls.get(situation, ()))
 
-    def context(self, situation: Situation, drafted: Iterable[Refinement] = ()) -> Context:
+    def context(self, situation: Situation, drafted: Drafted | None = None) -> Context:
         """What the situation may count on: what every call of it grants, also those of a draft."""
-        refinements = {r.situation: r for r in drafted}
         calls: list[Child] = []
         forbidden = {situation.schema}
+        new = drafted.calls.get(situation, {}) if drafted else {}
         for caller, children in self._calls.get(situation, {}).items():
-            if caller not in refinements:
+            if drafted is None or caller not in drafted.refinements:
                 calls.extend(children)
                 forbidden |= self.segments[caller].context.forbidden
-        for refinement in refinements.values():
-            own = [child for child in refinement.children if child.situation == situation]
-            if own:
-                calls.extend(own)
-                forbidden |= self._forbidden(refinement.situation, refinements)
+        for caller, own in new.items():
+            calls.extend(own)
+            forbidden |= self._forbidden(caller, drafted)
         return Context(_granted(calls), _replayed(calls), frozenset(forbidden))
 
-    def _forbidden(self, situation: Situation, drafted: dict[Situation, Refinement]) -> frozenset[str]:
+    def _forbidden(self, situation: Situation, drafted: Drafted | None) -> frozenset[str]:
         if situation in self.segments:
             return self.segments[situation].context.forbidden
-        return self.context(situation, drafted.values()).forbidden
+        return self.context(situation, drafted).forbidden
 
     def renew_contexts(self, situations: Iterable[Situation]) -> list[Segment]:
         """Work out anew what these may count on, and those below them; the segments for which it matters."""

@@ -178,7 +178,7 @@ class Planner:
         if refinement.tree is None and situation == draft.segment.situation:
             return self._give_up(draft, refinement)
         if refinement.tree is not None:
-            draft.refinements[situation] = refinement
+            draft.drafted.add(refinement)
             draft.waiting = [*self._to_refine(draft, refinement), *draft.waiting]
         if not draft.waiting:
             return self._finish(draft)
@@ -241,7 +241,7 @@ class Planner:
             return self._root_context
         if situation == draft.segment.situation:
             return draft.segment.context
-        return self.model.context(situation, draft.refinements.values())
+        return self.model.context(situation, draft.drafted)
 
     def _refine(self, situation: Situation, context: Context) -> Refinement:
         theory, beliefs, fold = self._theory, self._assuming.beliefs, self.fold

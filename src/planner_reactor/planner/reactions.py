@@ -63,7 +63,11 @@ class Names:
 
     def __init__(self) -> None:
         self._names: dict[Situation, str] = {}
-        self._taken: set[str] = set()
+        self._situations: dict[str, Situation] = {}
+
+    def situation(self, name: str) -> Situation | None:
+        """The situation that was given this name."""
+        return self._situations.get(name)
 
     def __getitem__(self, situation: Situation) -> str:
         name = self._names.get(situation)
@@ -72,10 +76,10 @@ class Names:
             wanted = situation.schema + "".join(part[:1].upper() + part[1:] for part in parts)
             wanted = name = re.sub(r"\W", "_", wanted)
             count = 1
-            while name in self._taken:
+            while name in self._situations:
                 count += 1
                 name = f"{wanted}_{count}"
-            self._taken.add(name)
+            self._situations[name] = situation
             self._names[situation] = name
         return name
 

@@ -47,7 +47,7 @@ class _Refining:
     consulted: Consulted = field(default_factory=Consulted)
     required: set[str] = field(default_factory=set)
     presumed: set[str] = field(default_factory=set)
-    children: dict[Action, Child] = field(default_factory=dict)
+    children: list[Child] = field(default_factory=list)
     outputs: list[tuple[Term, ...]] = field(default_factory=list)
     cleanup: dict[Action, None] = field(default_factory=dict)
     upsets: set[Action] = field(default_factory=set)
@@ -61,7 +61,7 @@ class _Refining:
             self.situation,
             tree,
             tuple(self.outputs),
-            tuple(self.children.values()),
+            tuple(self.children),
             tuple(self.cleanup),
             frozenset(self.upsets),
             frozenset(self.required),
@@ -190,7 +190,8 @@ class _Refining:
             if isinstance(argument, Parameter) and (fails or (again is not None and argument.number in again))
         )
         replayed = None if again is None and not fails else same
-        self.children[action] = Child(situation_of(action, fold=self.fold), action.arguments, granted, replayed)
+        situation = situation_of(action, fold=self.fold)
+        self.children.append(Child(situation, action.arguments, granted, replayed))
 
     # -------------------------------------------------------------------------------- failing half-way
 

@@ -118,6 +118,8 @@ class Search:
 
         The least number of steps that they cost beyond those in the plan, and what remains to be done.
         """
+        if len(added) < 2 or not added[0].depth:  # only rules bring conditions in such numbers
+            return 0, _chained(added, rest)
         groups, others = self._groups(added)
         if len(groups) < 2:
             return 0, _chained(added, rest)

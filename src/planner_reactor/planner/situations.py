@@ -7,7 +7,7 @@ everything that follows for others: its sub-situations, what it rests on, what h
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from planner_reactor.logic.formulas import Atom, Numeral, Term
 from planner_reactor.planner.beliefs import in_doubt
@@ -98,20 +98,20 @@ class Refinement:
 
     def renamed(self, constants: Mapping[Term, Term]) -> Refinement:
         """The same refinement for constants that the domain does not tell apart."""
-        return replace(
-            self,
-            situation=self.situation.renamed(constants),
-            tree=None if self.tree is None else renamed(self.tree, constants),
-            outputs=tuple(tuple(constants.get(t, t) for t in terms) for terms in self.outputs),
-            children=tuple(child.renamed(constants) for child in self.children),
-            cleanup=tuple(action.renamed(constants) for action in self.cleanup),
-            upsets=frozenset(action.renamed(constants) for action in self.upsets),
-            required=_renamed_names(self.required, constants),
-            presumed=_renamed_names(self.presumed, constants),
-            missing=_renamed_names(self.missing, constants),
-            asked=tuple(
-                Atom(atom.predicate, tuple(constants.get(a, a) for a in atom.arguments)) for atom in self.asked
-            ),
+        return Refinement(
+            self.situation.renamed(constants),
+            None if self.tree is None else renamed(self.tree, constants),
+            tuple(tuple(constants.get(t, t) for t in terms) for terms in self.outputs),
+            tuple(child.renamed(constants) for child in self.children),
+            tuple(action.renamed(constants) for action in self.cleanup),
+            frozenset(action.renamed(constants) for action in self.upsets),
+            _renamed_names(self.required, constants),
+            _renamed_names(self.presumed, constants),
+            _renamed_names(self.missing, constants),
+            tuple(Atom(a.predicate, tuple(constants.get(t, t) for t in a.arguments)) for a in self.asked),
+            self.blocked,
+            self.warnings,
+            self.gave_up,
         )
 
 
