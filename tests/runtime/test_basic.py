@@ -68,6 +68,14 @@ class Bench:
         def WaitForNothing() -> Steps:
             yield "nothing"
 
+        @host.process(limit=3)
+        def WaitBackwards() -> Steps:
+            yield -1
+
+        @host.process(window=(0, 0), outcomes=("stop",))
+        def NeverAborts() -> None:
+            raise Aborted("after all")
+
         @host.process(window=(0, 0), outcomes=("abort",))
         def NeverStops() -> None:
             return None
@@ -129,7 +137,9 @@ def test_aborted_is_an_outcome_and_its_reason_is_in_the_trace(bench: Bench) -> N
     assert [e.data["message"] for e in ran.trace.of("aborted")] == ["full"]
 
 
-@pytest.mark.parametrize("name", ["Break", "BreakLater", "Forget", "WaitForNothing", "NeverStops"])
+@pytest.mark.parametrize(
+    "name", ["Break", "BreakLater", "Forget", "WaitForNothing", "WaitBackwards", "NeverStops", "NeverAborts"]
+)
 def test_what_a_hosts_code_does_wrong_is_an_abort_with_cause_error(bench: Bench, name: str) -> None:
     ran = run(name, host=bench.host)
     assert (ran.outcome, ran.root.cause) == ("abort", "error")

@@ -109,7 +109,7 @@ class Basic:
         return Outcome(True, values)
 
     def raised(self, problem: Exception) -> Outcome:
-        if isinstance(problem, Aborted):
+        if isinstance(problem, Aborted) and "abort" in self.signature.outcomes:
             self._kernel.note("aborted", name=self.name, message=str(problem))
             return Outcome(False, cause="failed")
         self._kernel.note("error", name=self.name, message=f"{type(problem).__name__}: {problem}")
@@ -202,7 +202,7 @@ class Run:
         return None
 
     def _misused(self, wanted: object) -> Outcome:
-        self._routine.close()
+        self._shielded(self._routine.close)
         problem = TypeError(f"waits for {wanted!r}; expected a Signal, signal.within(seconds) or seconds")
         return self._basic.raised(problem)
 

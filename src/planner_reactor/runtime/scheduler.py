@@ -90,7 +90,7 @@ class Scheduler:
 
     def call_at(self, when: float, action: Action) -> Timer:
         """Run the action at this instant (now, if that is past)."""
-        timer = Timer(self, max(when, self.now), action)
+        timer = Timer(self, when if when > self.now else self.now, action)
         self.wait(timer.when, (timer, None))
         return timer
 
