@@ -12,7 +12,7 @@ help:  ## list the targets
 	@grep -hE '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## */  make \1\t/' | expand -t 22
 
 demo: $(VENV)/demo.done  ## a robot kits while its program is being rewritten; figures and a table in out/demo
-	$(BIN)/planner-reactor experiment papers --out out/demo
+	$(BIN)/python -m planner_reactor.experiments.demo --out out/demo
 
 test: $(VENV)/dev.done  ## every test (a few minutes)
 	$(BIN)/python -m pytest -n 2

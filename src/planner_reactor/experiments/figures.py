@@ -90,13 +90,16 @@ def _ideal(events: list[Event], m: Measures, title: str, beside: bool) -> Figure
 def _relaxed(events: list[Event], m: Measures, title: str, beside: bool) -> Figure | None:
     """The last time that the reactor rests on the fewest assumptions, if it has given up any."""
     mine = measure(events)
-    counts = mine.reactor.count
-    if not mine.relaxed or not counts.times:
+    counts, begin = mine.reactor.count, mine.ideal
+    if begin is None:
         return None
-    fewest = min(v for t, v in zip(counts.times, counts.values, strict=True) if t >= (mine.ideal or 0.0))
-    last = max(n for n, v in enumerate(counts.values) if v == fewest)
-    until = counts.times[last + 1] if last + 1 < len(counts.times) else mine.end
-    before = max(e.time for e in events if e.time < until or until == mine.end)
+    later = [(t, v) for t, v in zip(counts.times, counts.values, strict=True) if t > begin]
+    fewest = min((v for _, v in later), default=counts.at(begin))
+    if fewest >= counts.at(begin):
+        return None
+    last = max(n for n, (_, v) in enumerate(later) if v == fewest)
+    until = later[last + 1][0] if last + 1 < len(later) else float("inf")
+    before = max(e.time for e in events if e.time < until)
     return _reactor(events, before, title, "because", "; flags: relaxing which assumption brought it in")
 
 
@@ -107,13 +110,14 @@ def _reactor(events: list[Event], time: float | None, title: str, tags: Tagging,
     used = sorted({a for assumptions in snapshot.rests_on.values() for a in assumptions} | set(snapshot.watched))
     at = f"{1000 * time:.0f} ms" if time < 0.5 else f"{time:.1f} s"
     flags = "; flags: the assumptions that a situation rests on" if tags == "rests_on" else ""
-    notes = [f"{len(snapshot.reactions)} reactions, of which {_monitors(snapshot.watched)}; assumptions in use: "
-             f"{', '.join(used) or 'none'}"]  # fmt: skip
+    monitors = sorted({a for r in snapshot.reactions.values() for a in r.monitors})
+    count = sum(bool(r.monitors) for r in snapshot.reactions.values())
+    notes = [f"{len(snapshot.reactions)} reactions, {_monitors(count, monitors)}; in use: {', '.join(used) or 'none'}"]
     subtitle = f"our reactor at {at}{more}{flags}"
     return draw_hierarchy(title, subtitle, hierarchy(snapshot, tags=tags), notes)
 
 
-def _monitors(watched: Sequence[str]) -> str:
-    if not watched:
-        return "none is a monitor"
-    return f"{len(watched)} monitor{'s' if len(watched) > 1 else ''} ({', '.join(watched)})"
+def _monitors(count: int, watched: Sequence[str]) -> str:
+    if not count:
+        return "none of them a monitor"
+    return f"{count} of them monitor{'s' if count > 1 else ''} ({', '.join(watched)})"

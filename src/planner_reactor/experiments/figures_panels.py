@@ -21,7 +21,7 @@ from planner_reactor.experiments import figures_style as style
 from planner_reactor.experiments.staircases import Staircase
 
 WIDTH, LOW, TALL = 7.0, 2.1, 3.4
-WORDS, LEGEND = 128, 108
+WORDS, LEGEND = 120, 108
 """Characters on a line beneath a figure, and on a line of a legend."""
 
 

@@ -22,7 +22,7 @@ class Snapshot:
     """Reactions by label; `rests_on` and `because` by situation.
 
     `because[situation]` maps what it does (`deed`) to the assumption for whose relaxation it came in, and "" to the
-    one for which the situation itself did.
+    one for which the situation itself did. `watched`: the assumptions for whose failure a monitor watches.
     """
 
     reactions: Mapping[int, Reaction]
@@ -116,5 +116,10 @@ class _History:
 
 
 def _watched(reactions: Iterable[Reaction]) -> tuple[str, ...]:
-    """The assumptions that a monitor watches, in the order of its label."""
-    return tuple(dict.fromkeys(a for r in sorted(reactions, key=lambda r: r.label) for a in r.monitors))
+    """The assumptions whose failure a monitor watches for, in the order of its label."""
+    ordered = sorted(reactions, key=lambda r: r.label)
+    return tuple(dict.fromkeys(a for r in ordered if _is_assumonitor(r) for a in r.monitors))
+
+
+def _is_assumonitor(reaction: Reaction) -> bool:
+    return any(call.name == "ASSUMONITOR" for call in calls(reaction.schema.body))
