@@ -22,8 +22,8 @@ from planner_reactor.planner.supports import Supports, Way
 from planner_reactor.planner.theory import DEEPEST
 from planner_reactor.planner.threats import Threats
 
-NODES = 20_000
-"""How many choices one search may try."""
+NODES = 4_000
+"""How many choices may be tried for one group of conditions; plans of a few steps need some hundred at most."""
 
 Agenda: TypeAlias = "tuple[Goal, Agenda] | None"
 _Choice: TypeAlias = tuple[tuple[int, ...], Agenda, Iterator[Way]]
@@ -143,8 +143,10 @@ class Search:
                 plan.undo(mark)
             goals = tuple(plan.bindings.ground(goal.atom) for goal in group)
             first, start = len(plan.steps), len(plan.links)
+            nodes, self.nodes = self.nodes, 0  # each group has a budget of its own
             if not self._deepen(group):
                 return False
+            self.nodes = nodes
             solved.setdefault(key, Part(goals, first, len(plan.steps), start, len(plan.links)))
         return True
 
