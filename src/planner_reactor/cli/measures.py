@@ -13,7 +13,7 @@ from planner_reactor.cli.printing import Advance, print_json, reserved_output, t
 from planner_reactor.errors import InputError
 
 
-@command("papers --out out", "campaign --out out --trials 200 --workers 2 --json")
+@command("papers --out out", "faults --out out --trials 200 --workers 2 --json")
 def experiment(
     name: Annotated[str, typer.Argument(metavar="NAME", help="Which experiment.", show_default=False)],
     out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Directory for the results.")],
