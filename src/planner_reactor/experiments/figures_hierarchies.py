@@ -7,15 +7,12 @@ with its operator. Assumptions are small flags on the arrows. Works in points; t
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
-from functools import lru_cache
 from typing import Any
 
 import matplotlib
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.font_manager import FontProperties
 from matplotlib.patches import FancyBboxPatch, Polygon
-from matplotlib.textpath import text_to_path
 
 from planner_reactor.experiments import figures_style as style
 from planner_reactor.experiments.hierarchy import Act, AtOnce, InOrder, Node, Part, folded
@@ -47,7 +44,14 @@ def draw_hierarchy(title: str, subtitle: str, roots: Sequence[Node], notes: Sequ
     looks = {_look(node) for root in roots for node in _all(root)}
     signs = sorted({node.sign for root in roots for node in _all(root) if isinstance(node, AtOnce)})
     legend = [text for sign, text in SIGNS.items() if sign in signs]
-    width = max([LEAST_WIDTH, _text(title, 10.5) * 1.1, _text(subtitle, SIZE), *(_width(root) for root in roots)])
+    width = max(
+        [
+            LEAST_WIDTH,
+            style.text_width(title, 10.5) * 1.1,
+            style.text_width(subtitle, SIZE),
+            *(_width(root) for root in roots),
+        ]
+    )
     tall = sum(_height(root) + LANE_GAP for root in roots)
     foot = FOOT + 12 * len(notes)
     size = (width + 2 * MARGIN, tall + HEAD + foot)
@@ -91,19 +95,12 @@ def _look(node: Node) -> str:
 # -- how large
 
 
-@lru_cache(maxsize=4096)
-def _text(text: str, size: float) -> float:
-    """The width of a text, in points."""
-    font = FontProperties(family="DejaVu Sans", size=size)
-    return float(text_to_path.get_text_width_height_descent(text, font, False)[0])
-
-
 def _flags(tags: Sequence[str]) -> float:
-    return sum(_text(tag, FLAG_SIZE) + 9 for tag in tags)
+    return sum(style.text_width(tag, FLAG_SIZE) + 9 for tag in tags)
 
 
 def _own(label: str, tags: Sequence[str]) -> float:
-    return _text(label, SIZE) + _flags(tags) + 2 * PAD + POINT
+    return style.text_width(label, SIZE) + _flags(tags) + 2 * PAD + POINT
 
 
 def _width(node: Node) -> float:
@@ -163,7 +160,7 @@ def _arrow(axes: Axes, left: float, top: float, width: float, label: str, tags: 
     axes.text(left + PAD, middle + 0.5, label, fontsize=SIZE, color=ink, va="center", ha="left")
     right = tip - POINT - PAD + 3
     for tag in reversed(tags):
-        wide = _text(tag, FLAG_SIZE) + 6
+        wide = style.text_width(tag, FLAG_SIZE) + 6
         box = FancyBboxPatch(
             (right - wide, middle - 6), wide, 12, boxstyle="round,pad=0,rounding_size=2.5", linewidth=0, facecolor=FLAG
         )
@@ -190,7 +187,7 @@ def _key(axes: Axes, y: float, looks: Collection[str], legend: Sequence[str]) ->
         corners = [(x, y - 5), (x + 18, y - 5), (x + 22, y), (x + 18, y + 5), (x, y + 5)]
         axes.add_patch(Polygon(corners, closed=True, facecolor=face, edgecolor=edge, linewidth=0.9, linestyle=dash))
         axes.text(x + 27, y + 0.5, NAMES[look], fontsize=7.5, va="center")
-        x += 27 + _text(NAMES[look], 7.5) + 12
+        x += 27 + style.text_width(NAMES[look], 7.5) + 12
     for text in legend:
         axes.text(x, y + 0.5, text, fontsize=7.5, va="center", color=style.GREY)
-        x += _text(text, 7.5) + 12
+        x += style.text_width(text, 7.5) + 12

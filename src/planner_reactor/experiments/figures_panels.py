@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import inf, nextafter
-from textwrap import wrap
 from typing import Any
 
 import matplotlib
@@ -21,8 +20,13 @@ from planner_reactor.experiments import figures_style as style
 from planner_reactor.experiments.staircases import Staircase
 
 WIDTH, LOW, TALL = 7.0, 2.1, 3.4
-WORDS, LEGEND = 120, 108
-"""Characters on a line beneath a figure, and on a line of a legend."""
+WORDS, WORDS_SIZE = 470.0, 7.6
+"""Points: how wide the lines beneath a figure are, and the size of their letters."""
+
+LEGEND = 108
+"""Characters on a line of a legend."""
+
+MARKED = "times in the paper"
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,8 +86,9 @@ def panels_figure(
     counts: bool = True,
 ) -> Figure:
     """Panels below each other on one time axis, with title, legend, marks and words."""
-    words = wrap(beside.words, WORDS)
+    words = style.broken(beside.words, WORDS_SIZE, WORDS)
     shown = {line.label for _, lines in panels for line in lines} | (products.shown(window) if products else set())
+    shown |= {MARKED} if any(window.begin <= t <= window.end for t in beside.marks) else set()
     rows = 1 if sum(map(len, shown)) + 9 * len(shown) <= LEGEND else 2
     body = LOW if len(panels) == 1 else TALL
     above, below = 0.62 + 0.22 * rows, 0.58 + 0.17 * len(words)
@@ -107,7 +112,7 @@ def panels_figure(
         _legend(figure, axes, 1 - 0.38 / height, -(-len(shown) // rows))
         for n, text in enumerate(words):
             place = (0.12 + 0.17 * (len(words) - 1 - n)) / height
-            figure.text(0.02, place, text, fontsize=7.6, color=style.GREY, va="center")
+            figure.text(0.02, place, text, fontsize=WORDS_SIZE, color=style.GREY, va="center")
     return figure
 
 
@@ -148,8 +153,9 @@ def _mark(axis: Axes, window: Window, marks: Sequence[float], *, labelled: bool)
     """Thin dotted lines at the papers' times; labels of close ones are put together."""
     _, scale = window.unit
     shown = sorted(t for t in marks if window.begin <= t <= window.end)
+    look: dict[str, Any] = {"color": style.GREY, "linewidth": 1.0, "linestyle": (0, (1, 2)), "zorder": 0.5}
     for time in shown:
-        axis.axvline((time - window.zero) * scale, color=style.GREY, linewidth=0.9, linestyle=(0, (1, 2)), zorder=0.5)
+        axis.axvline((time - window.zero) * scale, label=MARKED, **look)
     groups: list[list[float]] = []
     for time in shown:
         if groups and time - groups[-1][-1] < 0.04 * (window.end - window.begin):
@@ -182,6 +188,8 @@ def _show_products(axis: Axes, window: Window, products: Products) -> None:
 
 def _legend(figure: Figure, axes: Sequence[Axes], top: float, columns: int) -> None:
     found = {label: mark for axis in axes for mark, label in zip(*axis.get_legend_handles_labels(), strict=True)}
+    if MARKED in found:
+        found[MARKED] = found.pop(MARKED)  # last
     figure.legend(
         found.values(), found.keys(), loc="upper left", ncols=columns, bbox_to_anchor=(0.012, top),
         columnspacing=1.4, handletextpad=0.6, labelspacing=0.4, borderaxespad=0.0, fontsize=8,

@@ -20,6 +20,8 @@ from planner_reactor.experiments.figures_panels import Beside, Line, Products, W
 from planner_reactor.experiments.measures import Change, Measures
 from planner_reactor.experiments.staircases import Staircase
 
+NO_BREAK = "\u00a0"
+
 
 def figure_12(m: Measures, title: str, beside: bool) -> Figure | None:
     """Adaptations issued and applied, while the first reactor is built."""
@@ -43,7 +45,7 @@ def figure_13(m: Measures, title: str, beside: bool) -> Figure | None:
         ("first reactor", published.FIRST_APPLIED, m.first_applied),
         ("first ideal reactor", published.IDEAL, m.ideal),
     )
-    words += f"   ·   assumptions {published.ASSUMPTIONS[0]}, {published.ASSUMPTIONS[1]} → {used[0]:.0f}, {used[1]:.0f}"
+    words += f"; assumptions {published.ASSUMPTIONS[0]}, {published.ASSUMPTIONS[1]} → {used[0]:.0f}, {used[1]:.0f}"
     marks = (published.FIRST_APPLIED, published.IDEAL)
     return panels_figure(
         title, _first_phase(m), [("assumptions in use", _assumptions(m))], _beside(beside, marks, words)
@@ -56,7 +58,7 @@ def figure_14(m: Measures, title: str, beside: bool, products: Products) -> Figu
     if window is None:
         return None
     relaxed = [r for r in m.relaxed if r.cause == "normal" and r.issued]
-    words = "   ·   ".join(f"{r.assumption}: {r.thinking:.3g} s of planning" for r in relaxed[:4])
+    words = "; ".join(f"{r.assumption}: {r.thinking:.3g} s of planning" for r in relaxed[:4])
     if beside:
         words = f"paper: AQ 6 s, AS 30 s, reactor follows at 103 to 104 s; ours: {_followed(relaxed)}"
     marks = (published.IDEAL, *published.REACTOR_FOLLOWS)
@@ -81,7 +83,8 @@ def figure_17(m: Measures, title: str, beside: bool, products: Products) -> Figu
         return None
     begin = min(r.began for r in signalled)
     window = Window(max(0.0, begin - 0.15 * (m.end - begin)), m.end)
-    words = "ours: " + ", ".join(f"{r.assumption} {_past(r)} at {r.began:.1f} s" for r in signalled)
+    told = (f"{r.assumption} {_past(r)} at {r.began:.1f} s".replace(" ", NO_BREAK) for r in signalled)
+    words = "ours: " + ", ".join(told)
     if beside:
         words = "paper: AM fails at 152 s, ADD at 215 s, reinstated at 357 s; " + words
     marks = (published.MOVED, published.BLOCKED, published.REINSTATED)
@@ -173,7 +176,7 @@ def _second_phase(m: Measures) -> Window | None:
 
 def _followed(relaxed: Sequence[Change]) -> str:
     parts = [
-        f"{r.assumption} {r.thinking:.3g} s, in the reactor at {max(r.applied):.1f} s"
+        f"{r.assumption} {r.thinking:.3g} s, in the reactor at {max(r.applied):.1f} s".replace(" ", NO_BREAK)
         for r in relaxed[:3]
         if r.applied and r.thinking is not None
     ]
@@ -188,8 +191,8 @@ def _past(change: Change) -> str:
 def _pairs(*measured: tuple[str, float, float | None]) -> str:
     """`what: paper → ours`, for each."""
     ours = ("–" if value is None else f"{value:.3g} s" if value < 1 else f"{value:.1f} s" for _, _, value in measured)
-    told = (f"{what} {paper:.0f} s → {own}" for (what, paper, _), own in zip(measured, ours, strict=True))
-    return "paper → ours:   " + "   ·   ".join(told)
+    told = [f"{what} {paper:.0f} s → {own}" for (what, paper, _), own in zip(measured, ours, strict=True)]
+    return "paper → ours: " + "; ".join(part.replace(" ", NO_BREAK) for part in told)
 
 
 def _beside(beside: bool, marks: Sequence[float], words: str) -> Beside:
