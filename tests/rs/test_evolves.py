@@ -360,6 +360,12 @@ def test_kill_takes_a_root_at_its_queued_assert_only() -> None:
     assert run("E[0] # (STOP :; ASSERT[s])", "Delay[1] ; KILL[0]") == {"runs"}
 
 
+def test_kill_waits_for_a_loop_that_senses_inside_a_round() -> None:
+    rounds = "(E[1] # (Delay[1] :; (IN[q]<x> :; STOP)))"
+    assert run(rounds, "Delay[2] ; KILL[1]") == {"runs"}
+    assert run(rounds, "KILL[1]") == STOPS  # in the outermost condition: it only senses
+
+
 def test_add_takes_a_posted_label_and_a_label_in_use_is_refused() -> None:
     program = "P[4] = OUT[p, 4]"
     reactor = "ADD<m> :: (E[m] # P[m])"

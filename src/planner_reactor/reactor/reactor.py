@@ -313,7 +313,7 @@ class Reactor:
         return isinstance(owner, tuple) and owner[1] in self.failed
 
     def over_budget(self) -> str | None:
-        live = self.executer.statistics().processes_live
+        live = self.executer.processes_live
         if live > self.budgets.processes:
             return f"{live} processes live, at most {self.budgets.processes}"
         return None

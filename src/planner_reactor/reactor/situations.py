@@ -38,6 +38,7 @@ class Situations:
         self._instances: dict[int, Instance] = {}
         self._awaited: dict[Strand, Instance] = {}
         self._queued: dict[Strand, QueuedAssert] = {}
+        self._held_by: dict[Hashable, list[Situation]] = {}  # what an owner inhibits, in the order in which it did
         self._count = 0
         self._tickets = 0
         self._services = 0
@@ -58,7 +59,7 @@ class Situations:
     @property
     def held(self) -> list[Situation]:
         """The situations that something inhibits."""
-        return [s for s in self._by_name.values() if s.inhibitions]
+        return list(dict.fromkeys(s for held in self._held_by.values() for s in held))
 
     def is_disabled(self, name: str, assumption: str) -> bool:
         return any(held.owner == ("assumption", assumption) for held in self.named(name).inhibitions)
@@ -321,6 +322,7 @@ class Situations:
 
     def _inhibit(self, situation: Situation, owner: Hashable, kind: Kind) -> None:
         situation.inhibitions.append(Inhibition(owner, kind))
+        self._held_by.setdefault(owner, []).append(situation)
         situation.held_back += kind != "inhibit"
         situation.disabled += kind == "assumption"
         self._notice("inhibited", situation=situation.name, owner=str(owner), because=kind)
@@ -332,6 +334,7 @@ class Situations:
             held = situation.inhibitions[index]
             if held.owner == owner:
                 del situation.inhibitions[index]
+                self._held_by[owner].remove(situation)
                 situation.held_back -= held.kind != "inhibit"
                 situation.disabled -= held.kind == "assumption"
                 self._notice("uninhibited", situation=name, owner=str(owner))
@@ -356,9 +359,9 @@ class Situations:
 
     def root_ended(self, owner: Hashable) -> None:
         """What an owner still holds when it ends is released (law 5)."""
-        for situation in self._by_name.values():
-            while any(held.owner == owner for held in situation.inhibitions):
-                self.uninhibit(situation.name, owner)
+        for situation in list(self._held_by.get(owner, ())):
+            self.uninhibit(situation.name, owner)
+        self._held_by.pop(owner, None)
 
     def _release(self, situation: Situation) -> None:
         if not situation.held_back:

@@ -25,6 +25,7 @@ from planner_reactor.rs.states import (
     Leaf,
     Queued,
     Reaction,
+    Round,
     Run,
     Serve,
     Spawning,
@@ -308,22 +309,29 @@ def _killed(killer: Spot, spots: list[Spot], config: Config, world: World) -> It
             yield _settled(("KILL", (label,), OK, ()), after, world)
 
 
-def resting(term: Run, *, sensing: bool = False) -> bool:
-    """Is nothing of this reaction in service? It waits for a situation, or senses in the condition of a
-    loop."""
+def resting(term: Run, *, sensing: bool | None = None) -> bool:
+    """Is nothing of this reaction in service? It waits for a situation, or senses in the condition of a loop.
+
+    `sensing` is decided by the outermost loop around the term: its condition (True) or its body (False).
+    """
+    inside = (True, False) if sensing is None else (sensing, sensing)
     match term:
         case Serve():
             return False
         case Ended() | Queued():
             return True
         case Leaf():
-            return sensing or term.name in RESTING
+            return bool(sensing) or term.name in RESTING
         case Await() | Waiting():
-            return sensing
+            return bool(sensing)
         case Testing():
-            return resting(term.condition, sensing=True)
+            return resting(term.condition, sensing=inside[0])
+        case Round():
+            return resting(term.body, sensing=inside[1])
         case Spawning():
-            return resting(term.condition, sensing=True) and all(resting(b, sensing=sensing) for b in term.bodies)
+            return resting(term.condition, sensing=inside[0]) and all(
+                resting(body, sensing=inside[1]) for body in term.bodies
+            )
         case _:
             return all(resting(p, sensing=sensing) for p in parts_of(term))
 
