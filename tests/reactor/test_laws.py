@@ -32,6 +32,14 @@ def half_applied(patch: Patch) -> None:
     scripted(patch, "DRAIN[part] : KILL[2] : Delay[1] : KILL[3] : POST[4] : UNINHIBIT[part]")
 
 
+def forgetful(patch: Patch) -> None:
+    scripted(patch, "DRAIN[part] : KILL[2] : KILL[3] : UNINHIBIT[part]")
+
+
+def mingling(patch: Patch) -> None:
+    scripted(patch, "DRAIN[part] : POST[4] : KILL[2] : KILL[3] : UNINHIBIT[part]")
+
+
 def cutting(patch: Patch) -> None:
     scripted(patch, "KILL[2] : KILL[3] : POST[4]")
     patch.setattr(Guards, "at_rest", lambda self, label: True)
@@ -119,6 +127,8 @@ def trusting(patch: Patch) -> None:
 
 DEFECTS: dict[str, tuple[int, Callable[[Patch], None]]] = {
     "applied half, then the rest": (1, half_applied),
+    "removed and not replaced": (1, forgetful),
+    "added beside what it replaces": (1, mingling),
     "a body cut off": (2, cutting),
     "an instance served by old and new reactions": (3, mixing),
     "a deadline that is not kept": (4, endless),

@@ -40,8 +40,9 @@ class Transaction:
     state: State = "draining"
     root: Root | None = None
     timer: Timer | None = None
-    surgery: float = 0.0  # when the first reaction was removed
-    kills: list[int] = field(default_factory=list)
+    surgery: float = 0.0  # when the first reaction was removed or added
+    kills: list[int] = field(default_factory=list)  # done
+    adds: list[int] = field(default_factory=list)  # done
 
     @property
     def situations(self) -> tuple[str, ...]:
@@ -99,13 +100,16 @@ class Transactions:
         self._by_root[transaction.root] = transaction
         return transaction
 
-    def killed(self, label: int) -> None:
-        """A reaction was removed by one of the scripts."""
+    def changed(self, label: int, *, added: bool) -> bool:
+        """A reaction was added or removed: was it one of the scripts that did it?"""
         for transaction in self._by_root.values():
-            if label in transaction.adaptation.kills:
-                if not transaction.kills:
+            wanted = transaction.adaptation.adds if added else transaction.adaptation.kills
+            if label in wanted:
+                if not (transaction.kills or transaction.adds):
                     transaction.surgery = self._scheduler.now
-                transaction.kills.append(label)
+                (transaction.adds if added else transaction.kills).append(label)
+                return True
+        return False
 
     def ended(self, root: Root) -> None:
         """A root of the executer has ended: if it was a script, its transaction is over."""

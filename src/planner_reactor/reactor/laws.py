@@ -41,6 +41,8 @@ class Laws:
         self.ledgers: list[Callable[[], str]] = []  # further ledgers: "" or what does not balance
         self.interruptions = 0
         self._applied: set[int] = set()
+        self._added: set[int] = set()  # labels that came to life and whose adaptation has not been looked at yet
+        self._promised: list[Transaction] = []  # applied in this step: what they add must be there at its end
         self._served_by: dict[int, int] = {}  # instance → version that served it
         self._asserted = self._ended = 0
         self._perceived = 0
@@ -63,6 +65,9 @@ class Laws:
 
     def _asserts(self, fields: dict[str, Any]) -> None:
         self._asserted += 1
+
+    def _adds(self, fields: dict[str, Any]) -> None:
+        self._added.add(fields["label"])
 
     def _completes(self, fields: dict[str, Any]) -> None:
         self._ended += 1
@@ -88,6 +93,7 @@ class Laws:
         adaptation = transaction.adaptation
         self._late(transaction)
         self._half(transaction)
+        self._promised.append(transaction)
         if left := [label for label in adaptation.kills if label not in transaction.kills]:
             self.breach(1, f"adaptation {adaptation.id} was applied without killing {left}")
         if adaptation.id in self._applied:
@@ -115,15 +121,21 @@ class Laws:
         self._disabled()
 
     def _atomic(self) -> None:
-        """Law 1: of an adaptation everything is there or nothing."""
-        live = self._reactor.reactions
+        """Law 1: of an adaptation everything is there or nothing; what goes, goes first."""
+        for transaction in self._promised:
+            adds = set(transaction.adaptation.adds)
+            if missing := sorted(adds - self._added):
+                self.breach(1, f"adaptation {transaction.adaptation.id} was applied without adding {missing}")
+            self._added -= adds
+        self._promised.clear()
         for transaction in self._reactor.transactions.under_way:
             self._half(transaction)
-            if not transaction.kills and (early := [a for a in transaction.adaptation.adds if a in live]):
-                self.breach(1, f"P{early} of adaptation {transaction.adaptation.id} were added before the kills")
+            if transaction.adds and len(transaction.kills) < len(transaction.adaptation.kills):
+                self.breach(1, f"adaptation {transaction.adaptation.id} added reactions beside those that it removes")
 
     def _half(self, transaction: Transaction) -> None:
-        if transaction.kills and self._reactor.scheduler.now > transaction.surgery + GRACE:
+        begun = transaction.kills or transaction.adds
+        if begun and self._reactor.scheduler.now > transaction.surgery + GRACE:
             self.breach(1, f"adaptation {transaction.adaptation.id} was half applied for some time")
 
     def _bounded(self) -> None:
@@ -175,6 +187,7 @@ class Laws:
 
 
 _WATCHES: dict[str, Callable[[Laws, dict[str, Any]], None]] = {
+    "added": Laws._adds,
     "asserted": Laws._asserts,
     "completed": Laws._completes,
     "entered": Laws._enters,

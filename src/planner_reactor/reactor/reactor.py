@@ -203,7 +203,7 @@ class Reactor:
         """Ask the laws as soon as the present step is over."""
         if not self._laws_due:
             self._laws_due = True
-            self.scheduler.soon(self._ask_laws)
+            self.executer.after_step(self._ask_laws)
 
     def _ask_laws(self) -> None:
         self._laws_due = False
@@ -226,12 +226,12 @@ class Reactor:
     def _reaction_added(self, label: int) -> None:
         self.reactions[label] = self._loaded[label]
         self.counts["changes_applied"] += 1
+        self.transactions.changed(label, added=True)
 
     def _reaction_removed(self, label: int) -> None:
         self.reactions.pop(label, None)
         self.counts["changes_applied"] += 1
-        if any(label in t.adaptation.kills for t in self.transactions.under_way):
-            self.transactions.killed(label)
+        if self.transactions.changed(label, added=False):
             self.perceive("guard_kill", str(label))
         else:
             self._forget([label])

@@ -165,6 +165,11 @@ class Executer:
         """
         return is_resting(strand)
 
+    def after_step(self, told: Callable[[], object]) -> None:
+        """Call `told` once, as soon as everything that belongs to the present step is done."""
+        self._kernel.put_off(told)
+        self._kernel.arm()
+
     def watch(self, label: Value, told: Callable[[], object]) -> None:
         """Call `told` after each step in which something below the guard `label` may have come to rest."""
         self._kernel.watch(label, told)

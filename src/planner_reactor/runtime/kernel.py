@@ -273,7 +273,7 @@ class Kernel:
         abort_body(self, strand.body, "budget")
         return None
 
-    def _put_off(self, action: Callable[[], object]) -> None:
+    def put_off(self, action: Callable[[], object]) -> None:
         """Do this when nothing silent is left of the present step."""
         self._later.append(action)
         self.due = True
@@ -291,7 +291,7 @@ class Kernel:
         """The strand has had a turn: what is below its guard may have come to rest."""
         if strand.guard in self.watched:
             if not self._moved:
-                self._put_off(self._tell_watchers)
+                self.put_off(self._tell_watchers)
             self._moved[strand.guard] = None
 
     def _tell_watchers(self) -> None:
@@ -304,7 +304,7 @@ class Kernel:
 
     def kill_root(self, root: Root) -> None:
         """Abort a root from outside, at the end of the present step."""
-        self._put_off(lambda: self._kill_root(root))
+        self.put_off(lambda: self._kill_root(root))
         self.arm()
 
     def _kill_root(self, root: Root) -> None:
