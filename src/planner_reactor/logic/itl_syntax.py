@@ -205,7 +205,9 @@ class _Parser:
         if word == "endactionschema":
             return True
         following = self._tokens[self._next + 1].text if self.token.kind == "name" else ""
-        return following == ":" and word in (*LABELS, "intervals", "input", "output")
+        if word == "intervals":
+            return following != "("
+        return following == ":" and word in (*LABELS, "input", "output")
 
     def _clause(self) -> Clause:
         offset = self.token.offset

@@ -15,30 +15,16 @@ from planner_reactor.link.messages import Adaptation, Change, Mode
 from planner_reactor.logic.formulas import Atom
 from planner_reactor.planner import reactions
 from planner_reactor.planner.beliefs import Beliefs
-from planner_reactor.planner.model import Drafted, Model, Segment
-from planner_reactor.planner.situations import Refinement, Situation
+from planner_reactor.planner.drafts import Draft
+from planner_reactor.planner.model import Model, Segment
+from planner_reactor.planner.situations import Situation
 from planner_reactor.planner.structure import Action
 from planner_reactor.rs.terms import Process
 
+MOST_REFUSALS = 5
+"""So often in a row the reactor may refuse what is planned for a situation, or for none."""
 Monitor = tuple[str, str]
 """ASSUMONITOR or HOLDMONITOR, and the assumption that it watches."""
-
-
-@dataclass(slots=True)
-class Draft:
-    """A situation that is being planned, with the sub-situations that have to be planned before it is
-    issued.
-    """
-
-    segment: Segment
-    purpose: str
-    assumption: str = ""
-    drafted: Drafted = field(default_factory=Drafted)
-    waiting: list[Situation] = field(default_factory=list)
-
-    @property
-    def refinements(self) -> dict[Situation, Refinement]:
-        return self.drafted.refinements
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,6 +65,7 @@ class Issuer:
     requests: dict[Atom, int] = field(default_factory=dict)
     under_way: dict[int, UnderWay] = field(default_factory=dict)
     introduced: list[Segment] = field(default_factory=list)  # by the last issue, and still stubs
+    refused_alone: int = 0  # adaptations of no situation that were not applied, in a row
     _strays: list[int] = field(default_factory=list)  # monitors that were to be removed, and are still there
 
     # ------------------------------------------------------------------------------------- what may go out
@@ -139,6 +126,8 @@ class Issuer:
         self, beliefs: Beliefs, holding: Mapping[str, int], asked: Mapping[Atom, Action]
     ) -> Adaptation | None:
         """An adaptation for monitors and perception requests alone, if any are missing or left over."""
+        if self.refused_alone >= MOST_REFUSALS:
+            return None
         parts, monitors, used = _Parts(), dict(self.monitors), set(self.model.used())
         self._watch(parts, beliefs, holding)
         for atom, action in asked.items():
@@ -249,6 +238,7 @@ class Issuer:
         if flight is None:
             return None
         self._release(flight)
+        self.refused_alone = 0
         changed = {change.situation for change in flight.adaptation.changes}
         for situation in flight.touched:
             segment = self.model.segments.get(situation)
@@ -266,6 +256,7 @@ class Issuer:
         if flight is None:
             return None
         self._release(flight)
+        self.refused_alone += flight.segment is None
         self.model.restore(flight.before)
         mine = set(flight.adaptation.adds)
         for monitor, label in list(self.monitors.items()):

@@ -12,6 +12,7 @@ from collections import Counter
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field, replace
 
+from planner_reactor.logic.formulas import Atom
 from planner_reactor.planner.reactions import Names
 from planner_reactor.planner.situations import Child, Context, Refinement, Situation
 from planner_reactor.rs.terms import Process
@@ -39,6 +40,9 @@ class Segment:
     urgency: int = 3  # see agenda
     impossible: str = ""
     refusals: int = 0
+    avoided: frozenset[str] = frozenset()
+    settled: bool = False
+    asked: tuple[Atom, ...] = ()
 
     @property
     def is_stub(self) -> bool:

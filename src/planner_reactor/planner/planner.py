@@ -14,34 +14,22 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping
-from dataclasses import replace
 
-from planner_reactor.link.messages import Adaptation, Mode, Perception
-from planner_reactor.logic.domain import ActionSchema, Domain
+from planner_reactor.link.messages import Mode, Perception
+from planner_reactor.logic.domain import Domain
 from planner_reactor.logic.formulas import Atom
-from planner_reactor.planner.agenda import (
-    ACTIVE_STUB,
-    FAILED_ASSUMPTION,
-    FAILED_SITUATION,
-    QUIESCENT,
-    Agenda,
-)
-from planner_reactor.planner.goals import chosen_goal, root_schema
-from planner_reactor.planner.issuing import Draft, Issuer, UnderWay
-from planner_reactor.planner.memory import Memory
-from planner_reactor.planner.model import Model, Segment
-from planner_reactor.planner.refinement import refine
+from planner_reactor.planner.agenda import ACTIVE_STUB, FAILED_ASSUMPTION, FAILED_SITUATION, QUIESCENT
+from planner_reactor.planner.goals import chosen_goal
+from planner_reactor.planner.issuing import Issuer
+from planner_reactor.planner.model import Model
+from planner_reactor.planner.reducing import Reducer
 from planner_reactor.planner.relaxing import Assuming
 from planner_reactor.planner.sensing import observer_of
-from planner_reactor.planner.situations import Context, Refinement, Situation
-from planner_reactor.planner.steps import Cause, Relax, Relaxation, Step, StepKind
-from planner_reactor.planner.structure import first_action
+from planner_reactor.planner.situations import Situation
+from planner_reactor.planner.steps import Cause, Relax, Relaxation, Step
 from planner_reactor.planner.theory import Theory
 
 __all__ = ["Planner", "Relaxation", "Step"]
-
-MOST_REFUSALS = 5
-"""So often in a row the reactor may refuse what is planned for a situation."""
 
 
 class Planner:
@@ -68,21 +56,13 @@ class Planner:
     ) -> None:
         self.domain = domain
         self.goal = chosen_goal(domain, goal)
-        self.fold = fold
+        self.model = Model(Situation(self.goal))
         self.patience = patience
-        self._theory = Theory(domain)
-        self._root = root_schema(self._theory, self.goal)
-        root = Situation(self.goal)
-        self.model = Model(root)
-        self._root_context = Context((True,) * len(self._root.executability), frozenset(), frozenset({self.goal}))
-        self._issuer = Issuer(self.model, fold, stub_ms, period_ms, mode, epoch)
-        self._assuming = Assuming(domain, relax)
-        self._failures: Counter[str] = Counter()
-        self._agenda = Agenda(self.model)
-        self._draft: Draft | None = None
-        self._memory = Memory(self._theory)
         self._counts: Counter[str] = Counter()
-        self._start = self.model.new(root, self._root_context)
+        self._failures: Counter[str] = Counter()
+        self._assuming = Assuming(domain, relax)
+        self._issuer = Issuer(self.model, fold, stub_ms, period_ms, mode, epoch)
+        self._reducer = Reducer(self.goal, Theory(domain), self.model, self._issuer, self._assuming, self._counts)
 
     # ------------------------------------------------------------------------------------- what it tells
 
@@ -104,15 +84,9 @@ class Planner:
     @property
     def expectation(self) -> tuple[str, ...]:
         """The situations that are not yet as the ω-ideal reactor has them (E_t)."""
-        if self.model.root not in self.model.segments:
-            return (self.goal,) if not self._start.impossible else ()
+        if not self._reducer.has_begun:
+            return () if self._reducer.is_done else (self.goal,)
         return tuple(segment.name for segment in self.model if segment.is_open)
-
-    @property
-    def _nothing_open(self) -> bool:
-        if self.model.root not in self.model.segments:
-            return bool(self._start.impossible)
-        return self._agenda.is_empty()
 
     @property
     def ideal(self) -> bool:
@@ -122,8 +96,7 @@ class Planner:
     @property
     def impossible(self) -> Mapping[str, str]:
         """Situations for which there is no plan, and why."""
-        segments = [self._start, *self.model]
-        return {segment.name: segment.impossible for segment in segments if segment.impossible}
+        return {segment.name: segment.impossible for segment in self._reducer.segments if segment.impossible}
 
     @property
     def pending(self) -> tuple[int, ...]:
@@ -138,7 +111,7 @@ class Planner:
 
     def statistics(self) -> Mapping[str, int]:
         """Counts: refinements, adaptations by outcome, relaxations by cause, perceptions by kind."""
-        return {**self._counts, "refinements": self._memory.worked_out}
+        return {**self._counts, "refinements": self._reducer.memory.worked_out}
 
     # ------------------------------------------------------------------------------------------- one step
 
@@ -147,124 +120,16 @@ class Planner:
 
         None if there is nothing to do until something is perceived.
         """
-        if self._draft is None:
-            self._draft = self._next_draft()
-        if self._draft is not None:
-            return self._work_on(self._draft)
-        return self._watch() or self._reinstate() or self._relax_next()
-
-    def _next_draft(self) -> Draft | None:
-        """The most urgent situation that is not held back by an adaptation under way."""
-        if self.model.root not in self.model.segments:
-            return None if self._start.impossible else Draft(self._start, f"goal {self.goal}")
-        best = self._agenda.next()
-        return None if best is None else Draft(best, *self._purpose(best))
-
-    def _purpose(self, segment: Segment) -> tuple[str, str]:
-        if segment.is_stub:
-            return f"refine {segment.name}", ""
-        about = self._assuming.current
-        if about is not None:
-            verb = {"normal": "relax", "forced": "give up", "reinstated": "reinstate"}[about.cause]
-            return f"{verb} {about.assumption}: {segment.name}", about.assumption
-        return f"adapt {segment.name}", ""
-
-    def _work_on(self, draft: Draft) -> Step:
-        """Refine the next situation of a draft; if it is the last, issue the adaptation."""
-        situation = draft.waiting.pop(0) if draft.waiting else draft.segment.situation
-        if situation in draft.refinements:
-            return self._finish(draft)
-        refinement = self._refine(situation, self._context(situation, draft))
-        if refinement.tree is None and situation == draft.segment.situation:
-            return self._give_up(draft, refinement)
-        if refinement.tree is not None:
-            draft.drafted.add(refinement)
-            draft.waiting = [*self._to_refine(draft, refinement), *draft.waiting]
-        if not draft.waiting:
-            return self._finish(draft)
-        return self._step("refine", draft)
-
-    def _to_refine(self, draft: Draft, refinement: Refinement) -> list[Situation]:
-        """Which new sub-situations must be concrete at once: what comes first; all, if there is a
-        reaction now.
-        """
-        assert refinement.tree is not None
-        new = [c.situation for c in refinement.children if c.situation not in self.model.segments]
-        if draft.segment.is_stub:
-            first = first_action(refinement.tree)
-            first_child = next((c for c in refinement.children if first and c.situation.schema == first.name), None)
-            new = [s for s in new if first_child and first and first.abstract and s == first_child.situation]
-        done = {*draft.refinements, *draft.waiting}
-        return [s for s in dict.fromkeys(new) if s not in done]
-
-    def _finish(self, draft: Draft) -> Step:
-        """Issue the adaptation that a draft amounts to, unless something that it touches is held."""
-        segment = draft.segment
-        holder = self._issuer.holder(self._issuer.touched_by(draft))
-        if holder is not None:
-            self._draft = None
-            self._agenda.set_aside(segment, holder)
-            return self._step("refine", draft)
-        below = [c.situation for c in segment.children]
-        adaptation = self._issuer.issue(draft, self._assuming.beliefs, self._assuming.watched)
-        segment.stale, segment.urgency = False, QUIESCENT
-        for stub in self._issuer.introduced:
-            self._agenda.push(stub)
-        below += [c.situation for c in segment.children]
-        forced = self.relaxed.get(draft.assumption) == "forced"
-        self._mark(self.model.renew_contexts(below), FAILED_ASSUMPTION if forced else QUIESCENT)
-        self._draft = None
-        self._assuming.note(adaptation.id if adaptation else None, done=self._nothing_open)
-        if adaptation is None:
-            return self._step("refine", draft)
-        self._counts["issued"] += 1
-        return self._step("refine", draft, adaptation)
-
-    def _give_up(self, draft: Draft, refinement: Refinement) -> Step:
-        """There is no plan for a situation: say so, and leave it as it is."""
-        draft.segment.impossible = refinement.why_impossible(draft.segment.name)
-        draft.segment.stale = False
-        self._draft = None
-        self._counts["impossible"] += 1
-        self._assuming.note(None, done=self._nothing_open)
-        return self._step("refine", draft)
-
-    def _step(self, kind: StepKind, draft: Draft, *adaptations: Adaptation) -> Step:
-        about = self._assuming.current or (self._assuming.records[-1] if self._assuming.records else None)
-        cause = about.cause if about is not None and draft.assumption else ""
-        return Step(kind, draft.segment.name, draft.assumption, cause, adaptations, draft.purpose)
-
-    # ----------------------------------------------------------------------------------------- refinement
-
-    def _context(self, situation: Situation, draft: Draft) -> Context:
-        if situation == self.model.root:
-            return self._root_context
-        if situation == draft.segment.situation:
-            return draft.segment.context
-        return self.model.context(situation, draft.drafted)
-
-    def _refine(self, situation: Situation, context: Context) -> Refinement:
-        theory, beliefs, fold = self._theory, self._assuming.beliefs, self.fold
-        schema = self._schema(situation)
-        return self._memory.recall(
-            situation, context, beliefs, lambda: refine(theory, beliefs, schema, situation, context, fold=fold)
-        )
-
-    def _schema(self, situation: Situation) -> ActionSchema:
-        return self._root if situation == self.model.root else self.domain.schemas[situation.schema]
-
-    # --------------------------------------------------------------------------------------- the outer loop
+        return self._reducer.step() or self._watch() or self._reinstate() or self._relax_next()
 
     def _watch(self) -> Step | None:
         """Monitors and perception requests that belong to no situation."""
         asked = {}
-        for segment in [self._start, *self.model]:
-            for atom in segment.refinement.asked if segment.refinement else ():
+        for segment in self._reducer.segments:
+            for atom in (*segment.asked, *(segment.refinement.asked if segment.refinement else ())):
                 action = observer_of(self.domain, atom)
                 if action is not None and self._assuming.beliefs.known(atom) is None:
                     asked[atom] = action
-        if self.model.root not in self.model.segments and not asked:
-            return None
         adaptation = self._issuer.reconcile(self._assuming.beliefs, self._assuming.watched, asked)
         if adaptation is None:
             return None
@@ -273,21 +138,20 @@ class Planner:
 
     def _reinstate(self) -> Step | None:
         """Take back an assumption that holds again, once nothing else is under way."""
-        if self._issuer.under_way or not self._nothing_open:
+        if self._issuer.under_way or not self._reducer.is_done:
             return None
         name = self._assuming.take_back()
         if name is None:
             return None
         self._counts["reinstated"] += 1
-        self._start.impossible = ""
-        self._mark([segment for segment in self.model if segment.impossible], QUIESCENT)
-        self._mark_outdated(QUIESCENT)
-        self._assuming.note(None, done=self._nothing_open)
+        self._reducer.reconsider()
+        self._reducer.mark_outdated(QUIESCENT)
+        self._assuming.note(None, done=self._reducer.is_done)
         return Step("reinstate", assumption=name, cause="reinstated", purpose=f"reinstate {name}")
 
     def _relax_next(self) -> Step | None:
         """The reactor is ω-ideal: relax the assumption in use that is least likely to hold."""
-        if not self._nothing_open or self.model.root not in self.model.segments:
+        if not (self._reducer.is_done and self._reducer.has_begun):
             return None
         name = self._assuming.least_likely(self.model.used())
         if name is None:
@@ -299,23 +163,9 @@ class Planner:
         """Plan without an assumption from now on."""
         self._counts[cause] += 1
         self._assuming.give_up(name, cause)
-        self._draft = None
-        self._mark_outdated(urgency)
-        self._assuming.note(None, done=self._nothing_open)
-
-    def _mark_outdated(self, urgency: int) -> None:
-        """Everything has to be planned again that rests on what is relaxed now, or missed what is not."""
-        relaxed = self._assuming.beliefs.relaxed
-        outdated = [s for s in self.model if s.refinement and not s.refinement.serves(relaxed)]
-        self._mark(outdated, urgency)
-
-    def _mark(self, segments: list[Segment], urgency: int) -> None:
-        """These have to be planned again."""
-        for segment in segments:
-            segment.stale = True
-            segment.impossible = ""
-            segment.urgency = min(segment.urgency, urgency)
-            self._agenda.push(segment)
+        self._reducer.abandon()
+        self._reducer.mark_outdated(urgency)
+        self._assuming.note(None, done=self._reducer.is_done)
 
     # ---------------------------------------------------------------------------------------- perceptions
 
@@ -324,14 +174,13 @@ class Planner:
         self._counts[perception.kind] += 1
         match perception.kind:
             case "adaptation_applied":
-                self._issuer.applied(int(perception.subject))
-                self._agenda.release(int(perception.subject))
+                self._reducer.applied(int(perception.subject))
             case "adaptation_refused":
-                self._not_applied(self._issuer.not_applied(int(perception.subject)), why=perception.cause)
+                self._reducer.not_applied(int(perception.subject), why=perception.cause or "no reason given")
             case "adaptation_timed_out":
-                self._not_applied(self._issuer.not_applied(int(perception.subject)))
+                self._reducer.not_applied(int(perception.subject))
             case "stub_trigger":
-                self._raise(perception.subject, ACTIVE_STUB)
+                self._reducer.raise_urgency(perception.subject, ACTIVE_STUB)
             case "situation_failure":
                 self._situation_failed(perception.subject)
             case "assumption_failure":
@@ -343,38 +192,12 @@ class Planner:
             case "guard_kill" | "error":
                 pass  # completion is told by adaptation_applied; errors are counted
 
-    def _not_applied(self, flight: UnderWay | None, *, why: str = "") -> None:
-        """Plan again what was in an adaptation that was refused (`why`) or that took too long."""
-        if flight is None or flight.segment is None:
-            return
-        self._draft = None
-        self._agenda.release(flight.adaptation.id)
-        if flight.segment not in self.model.segments:
-            fresh = self.model.new(flight.segment, self._root_context)
-            self._start = replace(fresh, refusals=self._start.refusals)
-        segment = self.model.segments.get(flight.segment, self._start)
-        self._mark([segment], QUIESCENT)
-        segment.refusals += bool(why)
-        if segment.refusals >= MOST_REFUSALS:
-            segment.impossible = f"the reactor refused it {segment.refusals} times ({why})"
-        restored = [situation for situation, _ in flight.before]
-        below = [c.situation for s in self.model for c in s.children if s.situation in restored]
-        self._mark(self.model.renew_contexts([*restored, *below]), QUIESCENT)
-        self._mark_outdated(QUIESCENT)
-
-    def _raise(self, name: str, urgency: int) -> None:
-        segment = self.model.named(name)
-        if segment is not None:
-            segment.urgency = min(segment.urgency, urgency)
-            if segment.is_open:
-                self._agenda.push(segment)
-            if self._draft is not None and self._draft.segment is not segment and segment.is_open:
-                self._draft = None
-
     def _situation_failed(self, name: str) -> None:
-        self._raise(name, FAILED_SITUATION)
+        """Its turn comes first; failures that nothing explains count as evidence, if there is no
+        more patience.
+        """
+        segment = self._reducer.raise_urgency(name, FAILED_SITUATION)
         self._failures[name] += 1
-        segment = self.model.named(name)
         if self.patience and segment and self._failures[name] >= self.patience:
             self._failures[name] = 0
             doubtful = self._assuming.least_likely(segment.required)
@@ -388,12 +211,8 @@ class Planner:
     def _told(self, perception: Perception) -> None:
         """An answer to a perception request: plan again what asked for it."""
         *arguments, verdict = perception.values or ("",)
-        atom = Atom(perception.subject, tuple(arguments))
-        if verdict not in ("holds", "fails"):
-            return
-        self._assuming.beliefs = self._assuming.beliefs.learning(atom, holds=verdict == "holds")
-        self._issuer.requests.pop(atom, None)
-        self._draft = None
-        self._start.impossible = ""
-        asked = [s for s in self.model if s.impossible or (s.refinement and atom in s.refinement.asked)]
-        self._mark(asked, QUIESCENT)
+        if verdict in ("holds", "fails"):
+            atom = Atom(perception.subject, tuple(arguments))
+            self._assuming.beliefs = self._assuming.beliefs.learning(atom, holds=verdict == "holds")
+            self._issuer.requests.pop(atom, None)
+            self._reducer.reconsider(atom)

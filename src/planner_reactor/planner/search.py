@@ -23,7 +23,9 @@ from planner_reactor.planner.theory import DEEPEST
 from planner_reactor.planner.threats import Threats
 
 NODES = 4_000
-"""How many choices may be tried for one group of conditions; plans of a few steps need some hundred at most."""
+"""How many choices may be tried for one group of conditions; plans of a few steps need some hundred at
+most.
+"""
 
 Agenda: TypeAlias = "tuple[Goal, Agenda] | None"
 _Choice: TypeAlias = tuple[tuple[int, ...], Agenda, Iterator[Way]]

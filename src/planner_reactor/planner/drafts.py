@@ -1,0 +1,60 @@
+"""A situation that is being planned, with what has to be planned before it is issued."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from planner_reactor.planner.model import Drafted, Segment
+from planner_reactor.planner.situations import Refinement, Situation
+
+
+@dataclass(slots=True)
+class Draft:
+    """Work on one segment. `waiting` sub-situations are refined before it is issued.
+
+    A sub-situation that turns out to be impossible is `avoided` where it is called; a situation for which
+    there is no way without is `settled`: it keeps the call, and what it calls is `left` a stub.
+    """
+
+    segment: Segment
+    purpose: str
+    assumption: str = ""
+    drafted: Drafted = field(default_factory=Drafted)
+    waiting: list[Situation] = field(default_factory=list)
+    avoided: dict[Situation, frozenset[str]] = field(default_factory=dict)
+    settled: set[Situation] = field(default_factory=set)
+    left: set[Situation] = field(default_factory=set)
+
+    def __post_init__(self) -> None:
+        if self.segment.avoided:
+            self.avoided[self.segment.situation] = self.segment.avoided
+        if self.segment.settled:
+            self.settled.add(self.segment.situation)
+
+    @property
+    def refinements(self) -> dict[Situation, Refinement]:
+        return self.drafted.refinements
+
+    def to_avoid(self, situation: Situation) -> frozenset[str]:
+        """The abstract actions that are not to be used for it."""
+        return self.avoided.get(situation, frozenset())
+
+    def fail(self, situation: Situation) -> bool:
+        """There is no plan for one of its situations: begin again without it, or content with less.
+
+        False if nothing is left to try.
+        """
+        if self.to_avoid(situation):
+            del self.avoided[situation]
+            self.settled.add(situation)
+        elif situation == self.segment.situation:
+            return False
+        else:
+            for caller in self.drafted.calls.get(situation, {}):
+                if caller in self.settled:
+                    self.left.add(situation)
+                else:
+                    self.avoided[caller] = self.to_avoid(caller) | {situation.schema}
+        self.drafted = Drafted()
+        self.waiting = []
+        return True

@@ -1,0 +1,252 @@
+"""The inner loop: reducing the expectation, one situation at a time (R §7.1, §7.2, §7.5).
+
+A `Reducer` takes the most urgent open situation, refines it, and with it what must be concrete at once: of
+a situation that was a stub the first step, of one that has a reaction all that is new, so that a reaction
+is never replaced by less. Then the difference is issued. Where a sub-situation turns out to be impossible,
+another way is sought that does without it; if there is none, the stub stays and the reason is reported.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable
+from dataclasses import dataclass, field, replace
+
+from planner_reactor.link.messages import Adaptation
+from planner_reactor.logic.domain import ActionSchema
+from planner_reactor.logic.formulas import Atom
+from planner_reactor.planner.agenda import FAILED_ASSUMPTION, QUIESCENT, Agenda
+from planner_reactor.planner.drafts import Draft
+from planner_reactor.planner.goals import root_schema
+from planner_reactor.planner.issuing import MOST_REFUSALS, Issuer, UnderWay
+from planner_reactor.planner.memory import Memory
+from planner_reactor.planner.model import Model, Segment
+from planner_reactor.planner.refinement import refine
+from planner_reactor.planner.relaxing import Assuming
+from planner_reactor.planner.situations import Context, Refinement, Situation
+from planner_reactor.planner.steps import Step, StepKind
+from planner_reactor.planner.structure import first_action
+from planner_reactor.planner.theory import Theory
+
+
+@dataclass(slots=True)
+class Reducer:
+    """Brings the model in line with the assumptions held. `start` is the root before it is in the model."""
+
+    goal: str
+    theory: Theory
+    model: Model
+    issuer: Issuer
+    assuming: Assuming
+    counts: Counter[str]
+    memory: Memory = field(init=False)
+    start: Segment = field(init=False)
+    _root: ActionSchema = field(init=False)
+    _agenda: Agenda = field(init=False)
+    _draft: Draft | None = None
+
+    def __post_init__(self) -> None:
+        self.memory = Memory(self.theory)
+        self._agenda = Agenda(self.model)
+        self._root = root_schema(self.theory, self.goal)
+        self.start = self._new_start()
+
+    def _new_start(self) -> Segment:
+        granted = (True,) * len(self._root.executability)
+        return self.model.new(self.model.root, Context(granted, frozenset(), frozenset({self.goal})))
+
+    @property
+    def has_begun(self) -> bool:
+        """Has the root been issued?"""
+        return self.model.root in self.model.segments
+
+    @property
+    def is_done(self) -> bool:
+        """Is there nothing left to reduce, held back or not?"""
+        return self._agenda.is_empty() if self.has_begun else bool(self.start.impossible)
+
+    @property
+    def segments(self) -> list[Segment]:
+        """All segments, with the root also before it is issued."""
+        return list(self.model) if self.has_begun else [self.start]
+
+    # ------------------------------------------------------------------------------------------- one step
+
+    def step(self) -> Step | None:
+        """Refine one situation; issue the adaptation when it was the last of a draft. None:
+        nothing to do now.
+        """
+        if self._draft is None:
+            self._draft = self._next_draft()
+        return None if self._draft is None else self._work_on(self._draft)
+
+    def abandon(self) -> None:
+        """Something has changed: what was being drafted is drafted anew."""
+        self._draft = None
+
+    def _next_draft(self) -> Draft | None:
+        if not self.has_begun:
+            return None if self.start.impossible else Draft(self.start, f"goal {self.goal}")
+        segment = self._agenda.next()
+        return None if segment is None else Draft(segment, *self._purpose(segment))
+
+    def _purpose(self, segment: Segment) -> tuple[str, str]:
+        if segment.is_stub:
+            return f"refine {segment.name}", ""
+        about = self.assuming.current
+        if about is None:
+            return f"adapt {segment.name}", ""
+        verb = {"normal": "relax", "forced": "give up", "reinstated": "reinstate"}[about.cause]
+        return f"{verb} {about.assumption}: {segment.name}", about.assumption
+
+    def _work_on(self, draft: Draft) -> Step:
+        situation = draft.waiting.pop(0) if draft.waiting else draft.segment.situation
+        if situation not in draft.refinements:
+            refinement = self._refine(situation, draft)
+            if refinement.tree is None:
+                if not draft.fail(situation):
+                    self._give_up(draft.segment, refinement)
+                return self._step("refine", draft)
+            draft.drafted.add(refinement)
+            draft.waiting = [*self._to_refine(draft, refinement), *draft.waiting]
+        return self._step("refine", draft) if draft.waiting else self._finish(draft)
+
+    def _to_refine(self, draft: Draft, refinement: Refinement) -> list[Situation]:
+        """Which new sub-situations must be concrete at once."""
+        assert refinement.tree is not None
+        new = list(dict.fromkeys(c.situation for c in refinement.children if c.situation not in self.model.segments))
+        if draft.segment.is_stub:
+            first = first_action(refinement.tree)
+            begun = [c.situation for c in refinement.children if first and c.arguments == first.arguments]
+            new = [s for s in new if first and first.abstract and s.schema == first.name and s in begun]
+        done = {*draft.refinements, *draft.waiting, *draft.left}
+        return [s for s in new if s not in done]
+
+    def _finish(self, draft: Draft) -> Step:
+        """Issue the adaptation that a draft amounts to, unless something that it touches is held."""
+        self._draft = None
+        segment = draft.segment
+        holder = self.issuer.holder(self.issuer.touched_by(draft))
+        if holder is not None:
+            self._agenda.set_aside(segment, holder)
+            return self._step("refine", draft)
+        below = [child.situation for child in segment.children]
+        adaptation = self.issuer.issue(draft, self.assuming.beliefs, self.assuming.watched)
+        segment.stale, segment.urgency, segment.asked = False, QUIESCENT, ()
+        for situation in draft.refinements:
+            issued = self.model.segments[situation]
+            issued.avoided, issued.settled = draft.to_avoid(situation), situation in draft.settled
+        for stub in self.issuer.introduced:
+            self._agenda.push(stub)
+        below += [child.situation for child in segment.children]
+        forced = self.assuming.causes.get(draft.assumption) == "forced"
+        self.mark(self.model.renew_contexts(below), FAILED_ASSUMPTION if forced else QUIESCENT)
+        self.assuming.note(adaptation.id if adaptation else None, done=self.is_done)
+        if adaptation is None:
+            return self._step("refine", draft)
+        self.counts["issued"] += 1
+        return self._step("refine", draft, adaptation)
+
+    def _give_up(self, segment: Segment, refinement: Refinement) -> None:
+        """There is no plan for a situation: say so, leave it as it is, and let its callers try without it."""
+        self._draft = None
+        segment.impossible = refinement.why_impossible(segment.name)
+        segment.asked = refinement.asked
+        segment.stale = False
+        self.counts["impossible"] += 1
+        for situation in self.model.callers(segment.situation):
+            caller = self.model.segments[situation]
+            if not caller.settled:
+                caller.avoided |= {segment.situation.schema}
+                self.mark([caller], QUIESCENT)
+        self.assuming.note(None, done=self.is_done)
+
+    def _step(self, kind: StepKind, draft: Draft, *adaptations: Adaptation) -> Step:
+        about = self.assuming.current or (self.assuming.records[-1] if self.assuming.records else None)
+        cause = about.cause if about is not None and draft.assumption else ""
+        return Step(kind, draft.segment.name, draft.assumption, cause, adaptations, draft.purpose)
+
+    # ----------------------------------------------------------------------------------------- refinement
+
+    def _refine(self, situation: Situation, draft: Draft) -> Refinement:
+        theory, beliefs, fold = self.theory, self.assuming.beliefs, self.issuer.fold
+        schema = self._root if situation == self.model.root else theory.domain.schemas[situation.schema]
+        context = self._context(situation, draft)
+        return self.memory.recall(
+            situation, context, beliefs, lambda: refine(theory, beliefs, schema, situation, context, fold=fold)
+        )
+
+    def _context(self, situation: Situation, draft: Draft) -> Context:
+        if situation == draft.segment.situation:
+            context = draft.segment.context
+        else:
+            context = self.model.context(situation, draft.drafted)
+        avoided = draft.to_avoid(situation)
+        return replace(context, forbidden=context.forbidden | avoided) if avoided else context
+
+    # ------------------------------------------------------------------------------------ what is to be done
+
+    def mark(self, segments: Iterable[Segment], urgency: int) -> None:
+        """These have to be planned again."""
+        for segment in segments:
+            segment.stale = True
+            segment.impossible = ""
+            segment.urgency = min(segment.urgency, urgency)
+            self._agenda.push(segment)
+
+    def mark_outdated(self, urgency: int) -> None:
+        """Everything has to be planned again that rests on what is relaxed now, or missed what is not."""
+        relaxed = self.assuming.beliefs.relaxed
+        self.mark([s for s in self.model if s.refinement and not s.refinement.serves(relaxed)], urgency)
+
+    def raise_urgency(self, name: str, urgency: int) -> Segment | None:
+        """The reactor has to do with this situation now."""
+        segment = self.model.named(name)
+        if segment is not None:
+            segment.urgency = min(segment.urgency, urgency)
+            if segment.is_open:
+                self._agenda.push(segment)
+                if self._draft is not None and self._draft.segment is not segment:
+                    self._draft = None
+        return segment
+
+    def reconsider(self, about: Atom | None = None) -> None:
+        """More holds, or more is known, than before: what seemed impossible, or was avoided, may
+        be possible now.
+        """
+        self.abandon()
+        again = []
+        for segment in self.segments:
+            asked = segment.refinement.asked if segment.refinement else ()
+            if segment.impossible or segment.avoided or segment.settled or about in asked:
+                segment.avoided, segment.settled = frozenset(), False
+                again.append(segment)
+        self.mark(again, QUIESCENT)  # the root, too, if it has not begun
+
+    # ------------------------------------------------------------------------------- answers of the reactor
+
+    def applied(self, adaptation: int) -> None:
+        """The reactor has applied it; what it held back may go on."""
+        self.issuer.applied(adaptation)
+        self._agenda.release(adaptation)
+
+    def not_applied(self, adaptation: int, *, why: str = "") -> None:
+        """Plan again what was in an adaptation that was refused (`why`) or that took too long."""
+        flight = self.issuer.not_applied(adaptation)
+        self._agenda.release(adaptation)
+        if flight is not None and flight.segment is not None:
+            self.abandon()
+            self._plan_again(flight, flight.segment, why)
+
+    def _plan_again(self, flight: UnderWay, situation: Situation, why: str) -> None:
+        if not self.has_begun:
+            self.start = replace(self._new_start(), refusals=self.start.refusals)
+        segment = self.model.segments.get(situation, self.start)
+        self.mark([segment], QUIESCENT)
+        segment.refusals += bool(why)
+        if segment.refusals >= MOST_REFUSALS:
+            segment.impossible = f"the reactor refused it {segment.refusals} times ({why})"
+        restored = [s for s, _ in flight.before]
+        below = [c.situation for s in self.model for c in s.children if s.situation in restored]
+        self.mark(self.model.renew_contexts([*restored, *below]), QUIESCENT)
+        self.mark_outdated(QUIESCENT)
