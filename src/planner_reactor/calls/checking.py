@@ -7,9 +7,10 @@ processes, with as many arguments and results, and each assumption is sensed.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
+
+from msgspec.structs import replace
 
 from planner_reactor.calls.hosts import HostSource, find_host
 from planner_reactor.calls.inputs import read_text
@@ -79,7 +80,8 @@ def must_fit(text: str, file: str, host: Host) -> tuple[Diagnostic, ...]:
 def misfits(domain: Domain, text: str, host: Host) -> tuple[Diagnostic, ...]:
     """Where a domain asks for what its host does not have."""
     found = [*_actions(domain, host), *_assumptions(domain, host)]
-    return Source(text, domain.file).shown([replace(f, place=replace(f.place, file=domain.file)) for f in found])
+    placed = [replace(f, place=replace(f.place, file=domain.file)) for f in found]
+    return Source(text, domain.file).shown(placed)
 
 
 def _actions(domain: Domain, host: Host) -> Iterator[Diagnostic]:

@@ -7,7 +7,7 @@ line to whoever listens.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +16,7 @@ from planner_reactor.calls.inputs import one_of, read_text, seconds, whole
 from planner_reactor.errors import RSError, SourceError
 from planner_reactor.reactor.built_ins import BuiltIns
 from planner_reactor.rs.checks import check
+from planner_reactor.rs.configurations import spawned_situations
 from planner_reactor.rs.expressions import EvaluationError, evaluate
 from planner_reactor.rs.parser import parse_process, read_program
 from planner_reactor.rs.printer import show
@@ -66,7 +67,7 @@ def run(
         time.stop = scheduler.stop
     root = start(call, arguments)
     executer.run(until)
-    return _came_to(root, call, executer)
+    return _came_to(root, executer)
 
 
 class _LonelyClock(WallClock):
@@ -138,24 +139,23 @@ def _executer(
         on_end=built_in.situations.root_ended,
     )  # fmt: skip
     built_in.attach(executer)
+    built_in.situations.spawned.update(spawned_situations(program))
 
     def start(call: Call, arguments: list[Value]) -> Root:
         if host.world is not None:
             host.world.start(scheduler)
-        return executer.start(call.name, arguments)
+        # a call that names its results has them under these names, whichever of them are bound
+        return executer.start_process(call) if call.results else executer.start(call.name, arguments)
 
     return executer, start
 
 
-def _came_to(root: Root, call: Call, executer: Executer) -> dict[str, Any]:
+def _came_to(root: Root, executer: Executer) -> dict[str, Any]:
     statistics = executer.statistics()
-    results: Mapping[str, Value] = root.results
-    if call.results:
-        results = dict(zip(call.results, root.results.values(), strict=False))
     return {
         "outcome": root.outcome or "running",
         "cause": root.cause,
-        "results": dict(results),
+        "results": dict(root.results),
         "time_s": statistics.time,
         "events": statistics.steps,
         "rendezvous": statistics.rendezvous,
