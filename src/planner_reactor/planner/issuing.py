@@ -66,6 +66,7 @@ class Issuer:
     under_way: dict[int, UnderWay] = field(default_factory=dict)
     introduced: list[Segment] = field(default_factory=list)  # by the last issue, and still stubs
     refused_alone: int = 0  # adaptations of no situation that were not applied, in a row
+    _watched: object = None  # for which assumptions the monitors are as they should be
     _strays: list[int] = field(default_factory=list)  # monitors that were to be removed, and are still there
 
     # ------------------------------------------------------------------------------------- what may go out
@@ -84,7 +85,9 @@ class Issuer:
         callers = {caller for orphan in gone for caller in self.model.callers(orphan.situation)}
         return frozenset({segment.situation, *draft.refinements, *fresh, *callers, *(o.situation for o in gone)})
 
-    def issue(self, draft: Draft, beliefs: Beliefs, holding: Mapping[str, int]) -> Adaptation | None:
+    def issue(
+        self, draft: Draft, touched: frozenset[Situation], beliefs: Beliefs, holding: Mapping[str, int]
+    ) -> Adaptation | None:
         """Record the draft in the model and write the adaptation; None if nothing in the reactor
         has to change.
         """
@@ -93,7 +96,6 @@ class Issuer:
         process = reactions.reaction(refinement, model.names, fold=self.fold)
         gone = model.orphans(segment, refinement.children)
         new = self._new(draft)
-        touched = self.touched_by(draft)
         before = tuple(model.snapshot([segment.situation, *new, *(o.situation for o in gone)]))
         same = segment.label is not None and process == segment.process
         told = segment.required
@@ -181,6 +183,10 @@ class Issuer:
 
     def _watch(self, parts: _Parts, beliefs: Beliefs, holding: Mapping[str, int]) -> None:
         """Bring the monitors into line with the assumptions in use."""
+        watched = (frozenset(self.model.used()), tuple(holding.items()))
+        if watched == self._watched and not self._strays:
+            return
+        self._watched = watched
         wanted: dict[Monitor, int] = {}
         for name in sorted(self.model.used(), key=lambda n: (beliefs.assumption(n).likelihood, n)):
             declared = beliefs.assumption(name)
@@ -189,8 +195,11 @@ class Issuer:
         for name, patience in sorted(holding.items()):
             wanted["HOLDMONITOR", name] = patience * (self.period_ms or beliefs.assumption(name).period_ms)
         coming = {label for flight in self.under_way.values() for label in flight.adaptation.adds}
-        for monitor in [m for m, label in self.monitors.items() if m not in wanted and label not in coming]:
-            parts.kills.append(self.monitors.pop(monitor))
+        for monitor in [m for m in self.monitors if m not in wanted]:
+            if self.monitors[monitor] in coming:
+                self._watched = None  # it cannot go before it has come
+            else:
+                parts.kills.append(self.monitors.pop(monitor))
         parts.kills.extend(self._strays)
         self._strays.clear()
         for (kind, name), period in wanted.items():
@@ -257,6 +266,7 @@ class Issuer:
             return None
         self._release(flight)
         self.refused_alone += flight.segment is None
+        self._watched = None
         self.model.restore(flight.before)
         mine = set(flight.adaptation.adds)
         for monitor, label in list(self.monitors.items()):

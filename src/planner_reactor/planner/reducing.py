@@ -126,19 +126,20 @@ class Reducer:
         """Issue the adaptation that a draft amounts to, unless something that it touches is held."""
         self._draft = None
         segment = draft.segment
-        holder = self.issuer.holder(self.issuer.touched_by(draft))
+        touched = self.issuer.touched_by(draft)
+        holder = self.issuer.holder(touched)
         if holder is not None:
             self._agenda.set_aside(segment, holder)
             return self._step("refine", draft)
         below = [child.situation for child in segment.children]
-        adaptation = self.issuer.issue(draft, self.assuming.beliefs, self.assuming.watched)
+        below += [c.situation for r in draft.refinements.values() for c in r.children if c.situation not in touched]
+        adaptation = self.issuer.issue(draft, touched, self.assuming.beliefs, self.assuming.watched)
         segment.stale, segment.urgency, segment.asked = False, QUIESCENT, ()
         for situation in draft.refinements:
             issued = self.model.segments[situation]
             issued.avoided, issued.settled = draft.to_avoid(situation), situation in draft.settled
         for stub in self.issuer.introduced:
             self._agenda.push(stub)
-        below += [child.situation for child in segment.children]
         forced = self.assuming.causes.get(draft.assumption) == "forced"
         self.mark(self.model.renew_contexts(below), FAILED_ASSUMPTION if forced else QUIESCENT)
         self.assuming.note(adaptation.id if adaptation else None, done=self.is_done)
