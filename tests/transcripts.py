@@ -48,7 +48,8 @@ def transcript(file: Path) -> str:
 def printed(command: str) -> str:
     """What a command prints, run where the examples are seen and what is written is forgotten."""
     with TemporaryDirectory() as folder, chdir(folder):
-        os.symlink(EXAMPLES, "examples")
+        for seen in ("examples", "src"):
+            os.symlink(ROOT / seen, seen)
         found = io.StringIO()
         with redirect_stdout(found), redirect_stderr(found):
             status = _status(shlex.split(command))
@@ -80,7 +81,8 @@ def difference(wanted: str, got: str) -> str:
 
 def examples() -> Iterator[Path]:
     """The files that say how to run them."""
-    return (file for file in sorted(EXAMPLES.iterdir()) if file.suffix != ".out" and file.is_file() and commands_of(file))
+    files = sorted(file for file in EXAMPLES.iterdir() if file.is_file() and file.suffix != ".out")
+    return (file for file in files if commands_of(file))
 
 
 def recorded(file: Path) -> Path:
