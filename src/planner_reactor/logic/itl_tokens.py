@@ -17,11 +17,12 @@ TEXT_LIMIT = 4_000_000
 """Longest domain text that is read, in characters."""
 
 _TOKEN = re.compile(
-    r"""(?P<skip>(?:\s+|//[^\n]*)+)
-    |(?P<name>[A-Za-z_]\w*(?:-\w+)*)
-    |(?P<number>\d+(?:\.\d+)?)
+    r"""\s*(?://[^\n]*\s*)*(?:
+     (?P<name>[A-Za-z_]\w*(?:-\w+)*)
     |(?P<sign><=>|=>|/=|[@()\[\]<>,;:])
-    |(?P<other>.)""",
+    |(?P<number>\d+(?:\.\d+)?)
+    |(?P<end>\Z)
+    |(?P<other>.))""",
     re.VERBOSE | re.DOTALL,
 )
 
@@ -66,17 +67,17 @@ def tokens(source: Source) -> list[Token]:
     found: list[Token] = []
     depth = 0
     for match in _TOKEN.finditer(source.text):
-        kind = match.lastgroup
+        kind = match.lastgroup or "other"
+        text, offset = match[kind], match.start(kind)
         if kind == "sign":
-            depth = max(0, depth + (match[0] in "([") - (match[0] in ")]"))
+            depth = max(0, depth + (text in "([") - (text in ")]"))
             if depth > DEPTH_LIMIT:
                 message = f"more than {DEPTH_LIMIT} brackets inside each other"
-                raise DomainError([source.diagnostic(match.start(), "too-deep", message)])
-        if kind == "other":
-            hint = "comments begin with //" if match[0] in "#%" else ""
-            message = f"{match[0]!r} has no meaning in a domain"
-            raise DomainError([source.diagnostic(match.start(), "stray-sign", message, hint)])
-        if kind is not None and kind != "skip":
-            found.append(Token(kind, match[0], match.start()))
-    found.append(Token("end", "", len(source.text)))
+                raise DomainError([source.diagnostic(offset, "too-deep", message)])
+        elif kind == "other":
+            hint = "comments begin with //" if text in "#%" else ""
+            raise DomainError([source.diagnostic(offset, "stray-sign", f"{text!r} has no meaning in a domain", hint)])
+        found.append(Token(kind, text, offset))
+        if kind == "end":
+            break
     return found
