@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import ast
-from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from msgspec.structs import replace
 
 import planner_reactor.workcell as workcell
 from planner_reactor.workcell.calibration import PINNED

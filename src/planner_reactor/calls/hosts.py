@@ -11,12 +11,13 @@ import inspect
 import sys
 import traceback
 from collections.abc import Callable
-from dataclasses import dataclass
 from importlib import import_module
 from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 from types import ModuleType
 from typing import Any, TypeAlias
+
+import msgspec
 
 from planner_reactor.errors import InputError, nearest
 from planner_reactor.runtime.host import Host
@@ -26,8 +27,7 @@ HostSource: TypeAlias = str | Host | Callable[..., Host]
 """The name of a module or file, a host, or what makes one."""
 
 
-@dataclass(frozen=True, slots=True)
-class HostMaker:
+class HostMaker(msgspec.Struct, frozen=True):
     """Makes the host of one run. `takes`: what it can be told beside the scheduler."""
 
     name: str

@@ -7,9 +7,10 @@ the caller gives is read and checked before the first event; then the trace is o
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypedDict, Unpack
+
+import msgspec
 
 from planner_reactor.calls.checking import must_fit
 from planner_reactor.calls.hosts import HostMaker, HostSource, find_host
@@ -59,8 +60,7 @@ class LoopOptions(TypedDict, total=False):
     told: Callable[[str], object]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class _Options:
+class _Options(msgspec.Struct, frozen=True, kw_only=True):
     """`LoopOptions` with their defaults, each checked by itself."""
 
     trays: int | None = None

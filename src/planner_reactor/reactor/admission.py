@@ -12,7 +12,8 @@ planner, a sentence for people. Nothing is changed here.
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import dataclass
+
+import msgspec
 
 from planner_reactor.errors import RefusedError, RSError
 from planner_reactor.link.messages import Adaptation
@@ -22,8 +23,7 @@ from planner_reactor.rs.terms import Program, Schema, Value
 from planner_reactor.rs.vocabulary import Signature
 
 
-@dataclass(frozen=True, slots=True)
-class Standing:
+class Standing(msgspec.Struct, frozen=True):
     """What an adaptation is held against: the reactor as it stands."""
 
     reactions: Mapping[int, Reaction]

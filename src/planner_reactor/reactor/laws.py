@@ -8,8 +8,9 @@ every breach. They use nothing that the reactor uses to keep them: counts are ke
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
+
+import msgspec
 
 from planner_reactor.reactor.adaptation import Transaction
 
@@ -20,8 +21,7 @@ CHECKED = (1, 2, 3, 4, 5, 6, 7, 10, 11, 13, 14)
 GRACE = 1e-6
 
 
-@dataclass(frozen=True, slots=True)
-class Violation:
+class Violation(msgspec.Struct, frozen=True):
     """A law that was broken, when (seconds), and how."""
 
     law: int

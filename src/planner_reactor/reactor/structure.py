@@ -7,7 +7,8 @@ monitor). The situations and what their reactions assert form the hierarchy of R
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
+
+import msgspec
 
 from planner_reactor.rs.terms import Call, Loop, Number, Process, Schema, Spawn, Symbol, Text, calls
 
@@ -15,8 +16,7 @@ REACTION = "P"
 """The schema of which every reaction is a clause."""
 
 
-@dataclass(frozen=True, slots=True)
-class Reaction:
+class Reaction(msgspec.Struct, frozen=True):
     """One clause `P[label]`."""
 
     label: int

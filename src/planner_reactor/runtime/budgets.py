@@ -7,14 +7,13 @@ next round waits one quantum (semantics.md, STREAM).
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import msgspec
 
 from planner_reactor.errors import InputError
 from planner_reactor.rs.prelude import QUANTUM
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Budgets:
+class Budgets(msgspec.Struct, frozen=True, kw_only=True):
     """`turns`: how often the strands of one served body, or of one root, may run at one instant, beyond once for each
     strand alive (the Zeno budget); a strand that runs on without waiting is charged for each instruction.
 

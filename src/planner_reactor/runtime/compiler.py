@@ -11,7 +11,8 @@ loop (its bindings are hidden), each part of a `#` (only the winner's leave). Ro
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+
+import msgspec
 
 from planner_reactor.rs.terms import (
     All,
@@ -42,8 +43,7 @@ from planner_reactor.runtime.strands import OUTSIDE, SENSING, SERVING, Frame, In
 from planner_reactor.runtime.values import Functions, frames, reader, tuples
 
 
-@dataclass(frozen=True, slots=True)
-class Exits:
+class Exits(msgspec.Struct, frozen=True):
     """Where a process goes on."""
 
     ok: Instruction

@@ -9,15 +9,15 @@ unloaded meanwhile.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+
+import msgspec
 
 from planner_reactor.errors import InputError
 from planner_reactor.rs.terms import Parameter, Schema, Value
 from planner_reactor.runtime.strands import UNBOUND, Instruction
 
 
-@dataclass(frozen=True, slots=True)
-class Code:
+class Code(msgspec.Struct, frozen=True):
     """A compiled body: where it begins, and what its frame holds beyond the arguments."""
 
     entry: Instruction

@@ -8,7 +8,8 @@ scheduler alone; between events nothing runs. The reactor extends it by `Control
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
+
+import msgspec
 
 from planner_reactor.errors import InputError, nearest
 from planner_reactor.rs.prelude import PRELUDE
@@ -27,8 +28,7 @@ from planner_reactor.runtime.strands import WAITING, WOKEN, Root, Strand
 from planner_reactor.trace import Trace
 
 
-@dataclass(frozen=True, slots=True)
-class Statistics:
+class Statistics(msgspec.Struct, frozen=True):
     """How things stand. `time` in seconds; `zeno` names the definition that last used up a budget of rounds."""
 
     time: float

@@ -16,9 +16,10 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from math import inf, isfinite
 from typing import Any, Protocol, TypeVar, get_type_hints
+
+import msgspec
 
 from planner_reactor.errors import InputError, nearest
 from planner_reactor.rs.terms import Value
@@ -50,8 +51,7 @@ class World(Protocol):
         """Let a fault happen; False if it cannot strike yet."""
 
 
-@dataclass(frozen=True, slots=True)
-class BasicProcess:
+class BasicProcess(msgspec.Struct, frozen=True):
     """A registered process: its signature, what runs, and what takes back what it may have begun."""
 
     signature: Signature

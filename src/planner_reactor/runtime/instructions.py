@@ -7,7 +7,7 @@ space. What forks is in `forks`.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import msgspec
 
 from planner_reactor.rs.expressions import EvaluationError
 from planner_reactor.rs.terms import Value
@@ -34,8 +34,7 @@ class Fail:
         return self.ab
 
 
-@dataclass(frozen=True, slots=True)
-class Arguments:
+class Arguments(msgspec.Struct, frozen=True):
     """What goes into a call, and the slots that its results go to."""
 
     frames: Frames

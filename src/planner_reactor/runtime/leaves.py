@@ -7,8 +7,9 @@ Running a leaf is a step. A leaf whose arguments have no value is one step too, 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Any
+
+import msgspec
 
 from planner_reactor.rs.expressions import EvaluationError, is_number
 from planner_reactor.rs.terms import Expression, Number, Value, Variable
@@ -19,8 +20,7 @@ from planner_reactor.runtime.strands import RUNNING, WAITING, Frame, Instruction
 from planner_reactor.runtime.values import Reader, Slots, Tuples
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Setting:
+class Setting(msgspec.Struct, frozen=True, kw_only=True):
     """What every leaf is compiled with."""
 
     kernel: Kernel

@@ -8,8 +8,9 @@ and 2 are controls, and so is each basic process of a host. An abort carries a c
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Protocol, TypeAlias
+
+import msgspec
 
 from planner_reactor.rs.terms import Value
 from planner_reactor.rs.vocabulary import Signature
@@ -21,8 +22,7 @@ Label: TypeAlias = tuple[str, tuple[Value, ...], str, tuple[Value, ...]]
 Observer: TypeAlias = Callable[[Label], object]
 
 
-@dataclass(frozen=True, slots=True)
-class Outcome:
+class Outcome(msgspec.Struct, frozen=True):
     """How a process ended: stop (`ok`) or abort, with the values of its results.
 
     `context` is what a control that opens a body wants to find again in `Body.context`.

@@ -11,6 +11,8 @@ from collections.abc import Generator
 from dataclasses import dataclass
 from typing import Any, Protocol
 
+import msgspec
+
 
 class Aborted(Exception):  # an outcome of a process, not an error
     """Raised by a host's process to abort: an outcome like any other. The text goes to the trace."""
@@ -58,8 +60,7 @@ class Signal:
         return (yield self)
 
 
-@dataclass(frozen=True, slots=True)
-class Within:
+class Within(msgspec.Struct, frozen=True):
     """Waiting for a signal with a limit of seconds."""
 
     signal: Signal

@@ -9,8 +9,9 @@ known here only by what a strand needs of them.
 from __future__ import annotations
 
 from collections.abc import Hashable, Iterator
-from dataclasses import dataclass
 from typing import Any, Final, Protocol, TypeAlias
+
+import msgspec
 
 from planner_reactor.rs.terms import Value
 
@@ -42,8 +43,7 @@ Stack: TypeAlias = tuple[Any, Frame, "Caller", int]
 """(the rest of the stack, the caller's frame, the call, how many calls lie below)."""
 
 
-@dataclass(frozen=True, slots=True)
-class Where:
+class Where(msgspec.Struct, frozen=True):
     """Where an instruction stands: in which definition, in which zone of it, and (leaves) where in the text."""
 
     within: str = ""

@@ -14,6 +14,8 @@ from dataclasses import dataclass
 from functools import partial
 from itertools import count
 
+import msgspec
+
 from planner_reactor.runtime.scheduler import Scheduler, Timer
 from planner_reactor.workcell.calibration import Calibration
 from planner_reactor.workcell.kit import KitSpec, PartKind
@@ -90,8 +92,7 @@ class Feeder:
         return self.kind.wanted
 
 
-@dataclass(frozen=True, slots=True)
-class Turns:
+class Turns(msgspec.Struct, frozen=True):
     """Kinds that come one at a time: each for `phase_s`, in this order, until `until`."""
 
     start: float

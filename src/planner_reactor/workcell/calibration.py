@@ -10,11 +10,11 @@ long a wait counts as starvation; `quiet_s` how long evidence against an assumpt
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+import msgspec
+from msgspec.structs import replace
 
 
-@dataclass(frozen=True, slots=True)
-class Calibration:
+class Calibration(msgspec.Struct, frozen=True):
     """Every duration, rate, tolerance and error rate of the cell."""
 
     # the arm

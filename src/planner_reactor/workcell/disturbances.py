@@ -9,8 +9,9 @@ Parameters are typed by their defaults; `part = ""` means: the first kind in the
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from typing import Any, TypeAlias
+
+import msgspec
 
 from planner_reactor.workcell.belt import Batch, Turns
 from planner_reactor.workcell.plant import Plant
@@ -23,8 +24,7 @@ Parameters: TypeAlias = Mapping[str, Any]
 Strike: TypeAlias = Callable[[Plant, int, Parameters], bool]
 
 
-@dataclass(frozen=True, slots=True)
-class Disturbance:
+class Disturbance(msgspec.Struct, frozen=True):
     """A kind of fault. `breaks`: its assumption ("" for none); `sensed_by`: the evidence that shows it."""
 
     kind: str

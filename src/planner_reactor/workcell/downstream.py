@@ -8,7 +8,8 @@ reasons but without causes. The causes (numbers of faults) are for the record of
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+
+import msgspec
 
 from planner_reactor.runtime.scheduler import Scheduler
 from planner_reactor.runtime.signals import Signal
@@ -19,8 +20,7 @@ from planner_reactor.workcell.things import Part, Tray
 REASONS = ("refused", "missing", "bad", "damaged", "wrong variant", "wrong kind", "damaged tray")
 
 
-@dataclass(frozen=True, slots=True)
-class Verdict:
+class Verdict(msgspec.Struct, frozen=True):
     """What downstream says of a tray: its tag, whether it serves, and why not."""
 
     tag: str
@@ -28,8 +28,7 @@ class Verdict:
     reasons: tuple[str, ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
-class Rejection:
+class Rejection(msgspec.Struct, frozen=True):
     """A kit that was lost: when, why, and the numbers of the faults that spoiled it (empty: our own doing)."""
 
     time: float

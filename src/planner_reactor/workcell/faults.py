@@ -13,10 +13,11 @@ values checked too, one with `attempts` is asked again after each of its events,
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 from typing import Any, Protocol
+
+import msgspec
 
 from planner_reactor.errors import nearest
 from planner_reactor.runtime.scheduler import Scheduler
@@ -35,13 +36,12 @@ class Strikable(Protocol):
     def strike(self, kind: str, **parameters: Any) -> bool: ...
 
 
-@dataclass(frozen=True, slots=True)
-class Fault:
+class Fault(msgspec.Struct, frozen=True):
     """One row: when from, what, with which parameters (those given; the world adds its defaults)."""
 
     at: float
     kind: str
-    parameters: Mapping[str, Any] = field(default_factory=dict)
+    parameters: Mapping[str, Any] = msgspec.field(default_factory=dict)
 
 
 def read_faults(path: Path, world: Strikable) -> tuple[Fault, ...]:

@@ -23,6 +23,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
+import msgspec
+
 from planner_reactor.errors import nearest
 from planner_reactor.workcell.calibration import PINNED, Calibration
 from planner_reactor.workcell.reading import Fields, TomlText, parse_toml, read_toml, typed
@@ -33,8 +35,7 @@ _TAKEN = ("tray", "trayarea", "arm", "belt", "stack", "downstream", "time")
 _PART_KEYS = ("kind", "variants", "wanted", "substitutes", "slot", "quality", "mix", "interval_s")
 
 
-@dataclass(frozen=True, slots=True)
-class PartKind:
+class PartKind(msgspec.Struct, frozen=True):
     """One kind of part: which variant the kit wants, which others serve instead, how it comes along the belt."""
 
     kind: str

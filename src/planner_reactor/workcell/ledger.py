@@ -10,7 +10,8 @@ difference is a `Finding`, typed and kept, never an exception: the run goes on a
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+
+import msgspec
 
 from planner_reactor.trace import Trace
 from planner_reactor.workcell.things import Part, Place, Tray, TrayPlace
@@ -43,8 +44,7 @@ COUNTED = (
 """What can be counted, in the order of `Books.differences`."""
 
 
-@dataclass(frozen=True, slots=True)
-class Finding:
+class Finding(msgspec.Struct, frozen=True):
     """A law of the cell that did not hold: which, when, and what was counted against what was expected."""
 
     law: str

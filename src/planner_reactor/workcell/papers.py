@@ -8,8 +8,9 @@ reactor`: 40 s, 42 s or 46 s) the first is taken. Nothing here knows how a plann
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from importlib.resources import files
+
+import msgspec
 
 from planner_reactor.workcell.calibration import PINNED, Calibration, slowed
 from planner_reactor.workcell.faults import Fault, Strikable, faults_from
@@ -18,8 +19,7 @@ from planner_reactor.workcell.reading import parse_toml
 FILE = "papers_1994.toml"
 
 
-@dataclass(frozen=True, slots=True)
-class PlannerDurations:
+class PlannerDurations(msgspec.Struct, frozen=True):
     """Seconds that the planner of 1994 took; `normal` by assumption, for all adaptations of its relaxation."""
 
     first_adaptation_s: float

@@ -14,11 +14,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import msgspec
+
 from planner_reactor.errors import InputError, caret, nearest
 
 
-@dataclass(frozen=True, slots=True)
-class TomlText:
+class TomlText(msgspec.Struct, frozen=True):
     """A parsed TOML file that still knows its text."""
 
     file: str

@@ -15,14 +15,14 @@ No number of a part or a fault ever passes through here.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+
+import msgspec
 
 from planner_reactor.workcell.plant import Plant
 from planner_reactor.workcell.things import Part, Tray
 
 
-@dataclass(frozen=True, slots=True)
-class Glimpse:
+class Glimpse(msgspec.Struct, frozen=True):
     """A part as the global camera sees it: `u`, `y` in the belt's frame (m). `certain`: seen the same thrice."""
 
     kind: str
@@ -32,16 +32,14 @@ class Glimpse:
     certain: bool = False
 
 
-@dataclass(frozen=True, slots=True)
-class PartView:
+class PartView(msgspec.Struct, frozen=True):
     """A held part as the palm camera sees it."""
 
     kind: str
     variant: str
 
 
-@dataclass(frozen=True, slots=True)
-class TrayView:
+class TrayView(msgspec.Struct, frozen=True):
     """A tray as a camera sees it: its tag, where it stands (m), which slots are filled."""
 
     tag: str

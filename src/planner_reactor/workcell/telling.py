@@ -7,8 +7,9 @@ the report are all that it reads.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Any
+
+import msgspec
 
 from planner_reactor.trace import Event
 from planner_reactor.workcell.disturbances import DISTURBANCES
@@ -74,8 +75,7 @@ def told(event: Event) -> str | None:
             return None
 
 
-@dataclass(frozen=True, slots=True)
-class Loss:
+class Loss(msgspec.Struct, frozen=True):
     """A kit that was rejected: when (seconds), why, and the kinds of fault that spoiled it."""
 
     time: float
