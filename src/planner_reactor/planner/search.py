@@ -8,11 +8,12 @@ Ties go to what `supports` tries first. A search that is not done after `NODES` 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 from typing import TypeAlias
 
 from planner_reactor.logic.allen import NAMED
+from planner_reactor.logic.domain import ActionSchema
 from planner_reactor.logic.formulas import variables
 from planner_reactor.planner.plan import BEFORE, END, Plan, Result, Unnamed
 from planner_reactor.planner.problem import Consulted, Goal, Problem
@@ -80,10 +81,8 @@ class Search:
         while True:
             if agenda is not None:
                 goal, rest = agenda
-                may_add = len(plan.steps) < steps + allowed
-                if not may_add and goal.atom.predicate in self.problem.theory.achievable and allowed < DEEPEST:
-                    self._cheapest = min(self._cheapest, allowed + 1)
-                stack.append((plan.mark(), rest, self._supports.ways(goal, may_add=may_add)))
+                afford = self._affords(rest, steps, allowed)
+                stack.append((plan.mark(), rest, self._supports.ways(goal, afford)))
             elif self._is_complete(steps) and self._threats.resolve(links, steps):
                 return True
             while stack:
@@ -95,6 +94,21 @@ class Search:
                 stack.pop()
             else:
                 return False
+
+    def _affords(self, rest: Agenda, steps: int, allowed: int) -> Callable[[ActionSchema], bool]:
+        """Can what remains be done within the limit if this action is added? (Asked before it is.)"""
+        count = len(self.plan.steps) - steps + 1
+        wanted = self._not_there(_goals(rest))
+        effects = self.problem.theory.effects
+
+        def affords(schema: ActionSchema) -> bool:
+            given = effects[schema.name]
+            needed = count + self._reach.least_together(p for p in wanted if p not in given)
+            if needed > allowed and allowed < DEEPEST:
+                self._cheapest = min(self._cheapest, needed)
+            return needed <= allowed
+
+        return affords
 
     def _next(self, rest: Agenda, ways: Iterator[Way], steps: int, allowed: int) -> tuple[bool, Agenda]:
         """What is to be done after the next way that is possible and not too dear."""
@@ -175,10 +189,14 @@ class Search:
 
     def _least(self, goals: Iterable[Goal]) -> int:
         """At least so many more steps are needed for all of these goals."""
+        return self._reach.least_together(self._not_there(goals))
+
+    def _not_there(self, goals: Iterable[Goal]) -> list[str]:
+        """The predicates of the goals, each once, that are no effect of a step in the plan."""
         effects = self.problem.theory.effects
         there = {predicate for step in self.plan.steps for predicate in effects[step.schema.name]}
         wanted = dict.fromkeys(goal.atom.predicate for goal in goals)
-        return self._reach.least_together(predicate for predicate in wanted if predicate not in there)
+        return [predicate for predicate in wanted if predicate not in there]
 
     def _groups(self, goals: list[Goal]) -> tuple[list[list[Goal]], list[Goal]]:
         """The goals with open variables in groups that share none, and those without open variables."""

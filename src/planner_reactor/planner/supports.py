@@ -34,8 +34,8 @@ class Supports:
     plan: Plan
     consulted: Consulted = field(default_factory=Consulted)
 
-    def ways(self, goal: Goal, *, may_add: bool) -> Iterator[Way]:
-        """Every way to support the goal; without `may_add`, those without a new step."""
+    def ways(self, goal: Goal, affords: Callable[[ActionSchema], bool]) -> Iterator[Way]:
+        """Every way to support the goal; by new steps only of actions that can be afforded."""
         atom = self.plan.bindings.ground(goal.atom)
         at_end = goal.consumer == END
         if not at_end:
@@ -43,13 +43,11 @@ class Supports:
         yield from self._steps(goal, atom)
         if at_end:
             yield from self._truths(goal, atom)
-        if may_add:
-            yield from self._actions(goal, atom, abstract=True)
+        yield from self._actions(goal, atom, affords, abstract=True)
         if goal.depth < DEEPEST:
             for rule in self.problem.theory.domain.rules_for.get(atom.predicate, ()):
                 yield partial(self._by_rule, goal, rule)
-        if may_add:
-            yield from self._actions(goal, atom, abstract=False)
+        yield from self._actions(goal, atom, affords, abstract=False)
 
     # ------------------------------------------------------------------------------- what is there already
 
@@ -149,13 +147,15 @@ class Supports:
 
     # ---------------------------------------------------------------------------------------- new actions
 
-    def _actions(self, goal: Goal, atom: Atom, *, abstract: bool) -> Iterator[Way]:
+    def _actions(
+        self, goal: Goal, atom: Atom, affords: Callable[[ActionSchema], bool], *, abstract: bool
+    ) -> Iterator[Way]:
         for schema, effect in self.problem.theory.domain.producers.get(atom.predicate, ()):
             if schema.abstract != abstract or schema.cleanup or not _may_match(schema, effect, atom):
                 continue
             if schema.name in self.problem.forbidden:
                 self.consulted.blocked.add(schema.name)
-            else:
+            elif affords(schema):
                 yield partial(self._by_action, goal, schema, effect)
 
     def _by_action(self, goal: Goal, schema: ActionSchema, effect: Effect) -> list[Goal] | None:
