@@ -57,8 +57,8 @@ _NAME = re.compile(r"[A-Za-z_]\w*")
 
 
 class Names:
-    """A name of its own for every situation: the action's, followed by its constants (`Lacks`, `a` →
-    `LacksA`).
+    """A name of its own for every situation: the action's, then its constants (`Tend`, `fern` →
+    `TendFern`).
     """
 
     def __init__(self) -> None:
