@@ -16,9 +16,10 @@ def tell(event: Event) -> None:
     """A line for whatever the robot does, and for whatever changes its program."""
     about = event.data
     match event.kind:
-        case "tray_moved_to" | "part_moved_to" if about["target"] in ("area", "in_trays"):
-            what = "a tray" if "tray" in about else "a part"
-            say(event, f"robot: puts {what} from the {about['source']} into place")
+        case "tray_moved_to" if about["target"] == "area":
+            say(event, "robot: puts an empty tray into its place")
+        case "part_moved_to" if ":" in about["target"]:
+            say(event, f"robot: puts a {about['target'].partition(':')[2]} into the tray")
         case "kit_judged":
             say(event, f"robot: a kit is {'complete' if about['accepted'] else 'rejected'}")
         case "stub_trigger":

@@ -14,6 +14,7 @@ from pathlib import Path
 from planner_reactor.cli.application import NAME
 from planner_reactor.cli.later import LATER
 from planner_reactor.rs import grammar
+from tests.transcripts import examples
 
 ROOT = Path(__file__).parent.parent
 DOCS = ROOT / "docs"
@@ -122,7 +123,21 @@ def _later() -> str:
     return "\n".join(["| command | what it will do |", "|---|---|", *lines, ""])
 
 
-MADE: Mapping[str, Callable[[], str]] = {"grammar": _grammar, "imports": _imports, "later": _later}
+def _examples() -> str:
+    """Every example that can be run, with the first sentence of its head."""
+    lines = ["| example | shows |", "|---|---|"]
+    for file in examples():
+        first = file.read_text(encoding="utf-8").splitlines()[0].strip('/# "')
+        lines.append(f"| [`{file.name}`](../examples/{file.name}) | {first} |")
+    return "\n".join([*lines, ""])
+
+
+MADE: Mapping[str, Callable[[], str]] = {
+    "examples": _examples,
+    "grammar": _grammar,
+    "imports": _imports,
+    "later": _later,
+}
 
 
 def made_anew(page: Path) -> str:

@@ -45,20 +45,18 @@ def found(languages: Iterable[str]) -> list[Block]:
 
 @pytest.mark.parametrize("page", OWN, ids=lambda page: page.stem)
 def test_what_a_page_says_of_python_is_so(page: Path, tmp_path: Path) -> None:
-    """All snippets of a page, in order, in one namespace; what has no prompt is run as it stands."""
+    """All snippets of a page, in order, in one namespace."""
     names: dict[str, Any] = {"__name__": page.stem}
     runner = doctest.DocTestRunner(optionflags=doctest.ELLIPSIS | doctest.IGNORE_EXCEPTION_DETAIL)
     (tmp_path / "examples").symlink_to(ROOT / "examples")
     with chdir(tmp_path):
         for block in blocks(page, "python"):
-            if ">>>" in block.text:
-                test = doctest.DocTestParser().get_doctest(block.text, names, str(block), str(page), block.line)
-                said: list[str] = []
-                runner.run(test, out=said.append, clear_globs=False)
-                names.update(test.globs)
-                assert not runner.failures, "".join(said)
-            else:
-                exec(compile(block.text, str(block), "exec"), names)
+            test = doctest.DocTestParser().get_doctest(block.text, names, str(block), str(page), block.line)
+            assert test.examples, block
+            said: list[str] = []
+            runner.run(test, out=said.append, clear_globs=False)
+            names.update(test.globs)
+            assert not runner.failures, "".join(said)
 
 
 @pytest.mark.parametrize("block", found(["console"]), ids=str)
