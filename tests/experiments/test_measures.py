@@ -76,8 +76,8 @@ def test_the_reactor_uses_what_was_brought_in_before_anything_rests_on_it(replay
     m = replayed.on_their_clock
     assert m.first_applied is not None
     assert m.reactor.at(m.first_applied) == m.planner.at(m.first_applied)
-    (first,) = [e for e in replayed.theirs.loop.trace.of("adaptation_applied") if e.data["id"] == 1]
-    assert set(first.data["assumptions"]) < m.reactor.at(m.first_applied)
+    (first,) = [e for e in replayed.theirs.loop.trace.of("adaptation_issued") if e.data["id"] == 1]
+    assert set(first.data["rests_on"]) < m.reactor.at(m.first_applied)
 
 
 def test_a_cut_reaction_would_be_counted(replayed: Replay) -> None:

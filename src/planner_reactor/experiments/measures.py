@@ -159,17 +159,8 @@ def _used_by_planner(events: Sequence[Event]) -> Members:
 
 def _used_by_reactor(events: Sequence[Event]) -> Members:
     """What its reactions rest on, and what was brought in with them and is watched."""
-    adopted: set[str] = set()
-    sent: dict[int, Event] = {}
-    points: list[tuple[float, frozenset[str]]] = []
-    for event in events:
-        if event.kind == "adaptation_issued":
-            sent[event.data["id"]] = event
-        elif event.kind == "adaptation_applied" and event.data["id"] in sent:
-            what = sent[event.data["id"]].data
-            adopted = (adopted | set(what["adopts"])) - set(what["drops"])
-            points.append((event.time, frozenset(adopted.union(event.data["assumptions"]))))
-    return Members.through(points)
+    applied = (e for e in events if e.kind == "adaptation_applied")
+    return Members.through((e.time, frozenset(e.data["assumptions"])) for e in applied)
 
 
 def _failing(events: Sequence[Event]) -> Members:

@@ -67,6 +67,7 @@ class Reactor:
         self._laws_due = False
         self._versions: dict[str, int] = {}
         self._rests_on: dict[str, tuple[str, ...]] = {}
+        self._adopted: set[str] = set()
         self._version_of_label: dict[int, int] = {}
         self._loaded: dict[int, Reaction] = {}
         self._highest_label = -1
@@ -175,6 +176,7 @@ class Reactor:
         for situation in adaptation.removed:
             self._versions[situation] = self._versions.get(situation, 0) + 1
             self._rests_on.pop(situation, None)
+        self._adopted = (self._adopted | set(adaptation.adopts)) - set(adaptation.drops)
         self._forget(adaptation.kills)
         self._disable_what_must_be()
         self.trace.record(
@@ -256,8 +258,9 @@ class Reactor:
 
     @property
     def assumptions_in_use(self) -> tuple[str, ...]:
-        """The assumptions that some reaction rests on, sorted."""
-        return tuple(sorted({a for assumptions in self._rests_on.values() for a in assumptions}))
+        """The assumptions that its reactions rest on, or that were brought in with them and are watched; sorted."""
+        rested_on = {a for assumptions in self._rests_on.values() for a in assumptions}
+        return tuple(sorted(rested_on | self._adopted))
 
     def resting_on(self, assumption: str) -> tuple[str, ...]:
         return tuple(s for s, assumptions in self._rests_on.items() if assumption in assumptions)
