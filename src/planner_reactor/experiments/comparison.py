@@ -7,8 +7,9 @@ theirs must have been) and one on our own. Nothing here runs or prints anything.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from itertools import pairwise
+
+import msgspec
 
 from planner_reactor.experiments.measures import Change, Measures
 
@@ -16,8 +17,7 @@ APART = 15.0
 """Seconds: what lies closer together is one set-back."""
 
 
-@dataclass(frozen=True, slots=True)
-class Row:
+class Row(msgspec.Struct, frozen=True):
     """One line of the table."""
 
     what: str

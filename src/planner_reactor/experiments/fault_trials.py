@@ -10,11 +10,12 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from random import Random
 from typing import Any
+
+import msgspec
 
 from planner_reactor.experiments.runs import Faults, Ran, Relax, Run, perform, the_domain
 from planner_reactor.experiments.schedules import at_random
@@ -33,8 +34,7 @@ PLANNER_S = (0.001, 0.1, 1.0)
 """Seconds that a planner takes for a step, one of which a trial has."""
 
 
-@dataclass(frozen=True, slots=True)
-class Trial:
+class Trial(msgspec.Struct, frozen=True):
     """One seed, for the world and for the faults; how long a planner's step takes; what is relaxed by choice."""
 
     seed: int

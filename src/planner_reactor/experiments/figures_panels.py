@@ -7,11 +7,11 @@ shorter than half a second is in milliseconds.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from math import inf, nextafter
 from typing import Any
 
 import matplotlib
+import msgspec
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
@@ -29,8 +29,7 @@ LEGEND = 108
 MARKED = "times in the paper"
 
 
-@dataclass(frozen=True, slots=True)
-class Line:
+class Line(msgspec.Struct, frozen=True):
     """One staircase of a panel."""
 
     stairs: Staircase
@@ -40,8 +39,7 @@ class Line:
     anew: bool = False  # counted from the zero of the window
 
 
-@dataclass(frozen=True, slots=True)
-class Window:
+class Window(msgspec.Struct, frozen=True):
     """What part of the run is shown, in seconds; `zero` is where the axis counts from."""
 
     begin: float
@@ -54,16 +52,14 @@ class Window:
         return ("ms", 1000.0) if self.end - self.begin < 0.6 else ("s", 1.0)
 
 
-@dataclass(frozen=True, slots=True)
-class Beside:
+class Beside(msgspec.Struct, frozen=True):
     """Marks at times that the papers print, and the words beneath a figure."""
 
     marks: Sequence[float] = ()
     words: str = ""
 
 
-@dataclass(frozen=True, slots=True)
-class Products:
+class Products(msgspec.Struct, frozen=True):
     """What came out of the world meanwhile."""
 
     noun: str

@@ -7,12 +7,12 @@ the papers print are marked by thin dotted lines; what they and we measured stan
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from typing import Any
 
 import matplotlib
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from msgspec.structs import replace
 
 from planner_reactor.experiments import figures_style as style
 from planner_reactor.experiments import published

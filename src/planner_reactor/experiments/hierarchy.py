@@ -8,8 +8,10 @@ once stands one below the other. Only what *does* something is shown: the proces
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
 from typing import Literal, TypeAlias
+
+import msgspec
+from msgspec.structs import replace
 
 from planner_reactor.experiments.snapshots import Snapshot, deed
 from planner_reactor.reactor.structure import Reaction
@@ -33,8 +35,7 @@ Sign = Literal["&", "|", "#", "if", "then"]
 BOOKKEEPING = frozenset({"SUCCEED", "FAIL", "UPDATE", "SUSPEND", "STOP", "ABORT", "NIL", "SIT"})
 
 
-@dataclass(frozen=True, slots=True)
-class Act:
+class Act(msgspec.Struct, frozen=True):
     """A basic process, or a stub. `tags`: assumptions."""
 
     label: str
@@ -42,8 +43,7 @@ class Act:
     tags: tuple[str, ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
-class Part:
+class Part(msgspec.Struct, frozen=True):
     """A situation and what it consists of; None where it stands in full elsewhere."""
 
     label: str
@@ -51,15 +51,13 @@ class Part:
     tags: tuple[str, ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
-class InOrder:
+class InOrder(msgspec.Struct, frozen=True):
     """One after the other."""
 
     parts: tuple[Node, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class AtOnce:
+class AtOnce(msgspec.Struct, frozen=True):
     """Side by side, by which operator; for "if" the two branches, for "then" lines to be read one after the other."""
 
     sign: Sign

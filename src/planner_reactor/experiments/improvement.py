@@ -11,7 +11,8 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Iterable
-from dataclasses import dataclass
+
+import msgspec
 
 from planner_reactor.experiments.staircases import Staircase
 
@@ -19,8 +20,7 @@ TICK = 1.0
 """Seconds from t−1 to t."""
 
 
-@dataclass(frozen=True, slots=True)
-class Members:
+class Members(msgspec.Struct, frozen=True):
     """A set that changes at instants: `sets[n]` from `times[n]` on, empty before."""
 
     times: tuple[float, ...]

@@ -10,6 +10,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 
+import msgspec
+
 from planner_reactor.experiments.improvement import Members, improvement
 from planner_reactor.experiments.staircases import Staircase
 from planner_reactor.trace import Event
@@ -18,8 +20,7 @@ Verdict = Callable[[Event], bool | None]
 """Whether an event says that a product was completed (True) or rejected (False); None: it says neither."""
 
 
-@dataclass(frozen=True, slots=True)
-class Lag:
+class Lag(msgspec.Struct, frozen=True):
     """One adaptation that was applied: from issued to applied, and the situations that it changed."""
 
     adaptation: int
@@ -64,8 +65,7 @@ class Change:
         return max(self.applied) - self.began if self.applied and len(self.applied) == len(self.issued) else None
 
 
-@dataclass(frozen=True, slots=True)
-class Measures:
+class Measures(msgspec.Struct, frozen=True):
     """What there is to say of one run."""
 
     end: float

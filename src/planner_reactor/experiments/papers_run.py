@@ -8,10 +8,12 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Mapping
-from dataclasses import asdict, dataclass
 from functools import partial
 from pathlib import Path
 from typing import Any
+
+import msgspec
+from msgspec.structs import asdict
 
 from planner_reactor.experiments.comparison import Row, compare, products_row
 from planner_reactor.experiments.loop import Loop
@@ -30,8 +32,7 @@ ALL_RELAXED_BY = 60.0
 """Seconds after which a run of ours has relaxed whatever there is."""
 
 
-@dataclass(frozen=True, slots=True)
-class Pays:
+class Pays(msgspec.Struct, frozen=True):
     """One row of the table that shows what relaxing buys: the same faults, with and without."""
 
     faults: str
@@ -42,8 +43,7 @@ class Pays:
     last_s: float | None  # when the last one was completed
 
 
-@dataclass(frozen=True, slots=True)
-class Replay:
+class Replay(msgspec.Struct, frozen=True):
     """The runs and what was measured of them."""
 
     theirs: Ran

@@ -6,10 +6,11 @@ An entry imports what it needs when it is run, so that the list itself costs not
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
 from typing import Any, Protocol
+
+import msgspec
 
 
 class Run(Protocol):
@@ -21,8 +22,7 @@ class Run(Protocol):
         """`trials`: how many runs (None: as many as it thinks right); `watch(done, of)` is told of progress."""
 
 
-@dataclass(frozen=True, slots=True)
-class Experiment:
+class Experiment(msgspec.Struct, frozen=True):
     """`about`: one line that says what it shows."""
 
     about: str

@@ -7,9 +7,10 @@ domain and host are `Loop`s like these.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from functools import partial
 from typing import Any, Literal, TypeAlias
+
+import msgspec
 
 from planner_reactor.experiments.loop import Loop, summary
 from planner_reactor.experiments.timing import PER_STEP, Fixed, Measured, PlannerTime, Recorded
@@ -29,8 +30,7 @@ Faults: TypeAlias = Callable[[World], tuple[Fault, ...]]
 """What strikes, once the world that knows the kinds is there."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Run:
+class Run(msgspec.Struct, frozen=True, kw_only=True):
     """What an experiment varies. `products`: how many to complete (0: no number); times in seconds."""
 
     seed: int = 1
@@ -42,8 +42,7 @@ class Run:
     until: float | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class Ran:
+class Ran(msgspec.Struct, frozen=True):
     """What came of a run. `unstruck`: the kinds of the faults that never could strike."""
 
     run: Run

@@ -8,7 +8,8 @@ not know the history). Both give the same reactions at the same instant.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+
+import msgspec
 
 from planner_reactor.reactor.reactor import Reactor
 from planner_reactor.reactor.structure import Reaction, reaction_of
@@ -17,8 +18,7 @@ from planner_reactor.rs.terms import Call, Number, Symbol, Text, calls
 from planner_reactor.trace import Event
 
 
-@dataclass(frozen=True, slots=True)
-class Snapshot:
+class Snapshot(msgspec.Struct, frozen=True):
     """Reactions by label; `rests_on` and `because` by situation.
 
     `because[situation]` maps what it does (`deed`) to the assumption for whose relaxation it came in, and "" to the
@@ -27,7 +27,7 @@ class Snapshot:
 
     reactions: Mapping[int, Reaction]
     rests_on: Mapping[str, tuple[str, ...]]
-    because: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
+    because: Mapping[str, Mapping[str, str]] = msgspec.field(default_factory=dict)
     watched: tuple[str, ...] = ()
 
 

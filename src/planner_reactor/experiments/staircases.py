@@ -7,11 +7,11 @@ from __future__ import annotations
 
 from bisect import bisect_left, bisect_right
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+
+import msgspec
 
 
-@dataclass(frozen=True, slots=True)
-class Staircase:
+class Staircase(msgspec.Struct, frozen=True):
     """`values[n]` from `times[n]` on, until the next; `start` before the first."""
 
     times: tuple[float, ...] = ()

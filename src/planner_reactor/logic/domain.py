@@ -15,6 +15,8 @@ from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Literal, TypeVar
 
+import msgspec
+
 from planner_reactor.errors import Place
 from planner_reactor.logic.allen import NAMED, relations
 from planner_reactor.logic.formulas import Atom, Term
@@ -45,8 +47,7 @@ class Assumption:
     place: Place | None = field(default=None, compare=False, repr=False)
 
 
-@dataclass(frozen=True, slots=True)
-class Condition:
+class Condition(msgspec.Struct, frozen=True):
     """An atom that must hold over an interval; `relation` leads from that interval to the one it is
     stated for.
     """
@@ -55,8 +56,7 @@ class Condition:
     relation: int = AT_START
 
 
-@dataclass(frozen=True, slots=True)
-class Effect:
+class Effect(msgspec.Struct, frozen=True):
     """An atom that an action brings about; `relation` leads from the action's interval to the atom's."""
 
     atom: Atom

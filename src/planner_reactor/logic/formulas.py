@@ -10,15 +10,15 @@ only if they are equal.
 from __future__ import annotations
 
 from collections.abc import Hashable, Iterator, Mapping
-from dataclasses import dataclass
 from typing import TypeAlias
+
+import msgspec
 
 Term: TypeAlias = Hashable
 """An int is a variable, anything else a constant."""
 
 
-@dataclass(frozen=True, slots=True)
-class Numeral:
+class Numeral(msgspec.Struct, frozen=True):
     """A number as a constant of a domain (a bare int would be a variable)."""
 
     value: int | float
@@ -27,8 +27,7 @@ class Numeral:
         return str(self.value)
 
 
-@dataclass(frozen=True, slots=True)
-class Atom:
+class Atom(msgspec.Struct, frozen=True):
     """`predicate(arguments)`."""
 
     predicate: str

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TypeAlias
 
+import msgspec
 
-@dataclass(frozen=True, slots=True)
-class Name:
+
+class Name(msgspec.Struct, frozen=True):
     """An identifier or a number, and where it stands."""
 
     text: str
@@ -15,15 +15,13 @@ class Name:
     number: bool = False
 
 
-@dataclass(frozen=True, slots=True)
-class AtomNode:
+class AtomNode(msgspec.Struct, frozen=True):
     name: Name
     arguments: tuple[Name, ...]
     at: Name | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class RelationNode:
+class RelationNode(msgspec.Struct, frozen=True):
     """`ITL(first, relation, second)`."""
 
     first: Name
@@ -31,8 +29,7 @@ class RelationNode:
     second: Name
 
 
-@dataclass(frozen=True, slots=True)
-class UnequalNode:
+class UnequalNode(msgspec.Struct, frozen=True):
     first: Name
     second: Name
 
@@ -40,8 +37,7 @@ class UnequalNode:
 LiteralNode: TypeAlias = AtomNode | RelationNode | UnequalNode
 
 
-@dataclass(frozen=True, slots=True)
-class Clause:
+class Clause(msgspec.Struct, frozen=True):
     """A conjunction; `exists` are the names that it introduces."""
 
     exists: tuple[Name, ...]
@@ -49,8 +45,7 @@ class Clause:
     offset: int
 
 
-@dataclass(frozen=True, slots=True)
-class AssumptionNode:
+class AssumptionNode(msgspec.Struct, frozen=True):
     name: Name
     parameters: tuple[Name, ...]
     likelihood: Name | None
@@ -59,16 +54,14 @@ class AssumptionNode:
     reinstatable: bool
 
 
-@dataclass(frozen=True, slots=True)
-class GoalNode:
+class GoalNode(msgspec.Struct, frozen=True):
     name: Name
     forall: tuple[Name, ...]
     antecedent: Clause | None
     consequent: Clause
 
 
-@dataclass(frozen=True, slots=True)
-class RuleNode:
+class RuleNode(msgspec.Struct, frozen=True):
     """`left => right`; a definition `left <=> right` has been turned round, for it is used from right
     to left.
     """
@@ -79,20 +72,17 @@ class RuleNode:
     offset: int
 
 
-@dataclass(frozen=True, slots=True)
-class PersistenceNode:
+class PersistenceNode(msgspec.Struct, frozen=True):
     forall: tuple[Name, ...]
     atom: AtomNode
     assumptions: tuple[AtomNode, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class FactNode:
+class FactNode(msgspec.Struct, frozen=True):
     clause: Clause
 
 
-@dataclass(frozen=True, slots=True)
-class SchemaNode:
+class SchemaNode(msgspec.Struct, frozen=True):
     name: Name
     inputs: tuple[Name, ...]
     outputs: tuple[Name, ...]

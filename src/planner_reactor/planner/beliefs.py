@@ -8,14 +8,15 @@ missed. Immutable: the planner makes new ones when it relaxes, reinstates or lea
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+
+import msgspec
+from msgspec.structs import replace
 
 from planner_reactor.logic.domain import Assumption, Domain
 from planner_reactor.logic.formulas import Atom, Bindings, Numeral
 
 
-@dataclass(frozen=True, slots=True)
-class Answer:
+class Answer(msgspec.Struct, frozen=True):
     """Does something hold? `used` are the assumptions that it rests on, `missing` those without which
     it fails.
     """
@@ -28,8 +29,7 @@ class Answer:
 _CERTAIN = Answer(True)
 
 
-@dataclass(frozen=True, slots=True)
-class Beliefs:
+class Beliefs(msgspec.Struct, frozen=True):
     """Assumptions in doubt (`relaxed`), and ground atoms known beyond the domain's facts (`told`: true
     or false).
     """

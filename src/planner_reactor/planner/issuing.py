@@ -11,6 +11,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+import msgspec
+
 from planner_reactor.link.messages import Adaptation, Change, Mode
 from planner_reactor.logic.formulas import Atom
 from planner_reactor.planner import reactions
@@ -27,8 +29,7 @@ Monitor = tuple[str, str]
 """ASSUMONITOR or HOLDMONITOR, and the assumption that it watches."""
 
 
-@dataclass(frozen=True, slots=True)
-class UnderWay:
+class UnderWay(msgspec.Struct, frozen=True):
     """An adaptation that was issued and not yet answered, and how to take it back."""
 
     adaptation: Adaptation

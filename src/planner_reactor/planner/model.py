@@ -10,7 +10,10 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
+
+import msgspec
+from msgspec.structs import replace
 
 from planner_reactor.logic.formulas import Atom
 from planner_reactor.planner.reactions import Names
@@ -18,8 +21,7 @@ from planner_reactor.planner.situations import Child, Context, Refinement, Situa
 from planner_reactor.rs.terms import Process
 
 
-@dataclass(slots=True)
-class Segment:
+class Segment(msgspec.Struct):
     """One situation in the reactor, as far as is known.
 
     `path` leads to it from the root, by the places of calls; what comes earlier in the text is planned

@@ -13,6 +13,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
+import msgspec
+
 from planner_reactor.logic.allen import relations
 from planner_reactor.logic.domain import ActionSchema, Effect
 from planner_reactor.logic.formulas import Atom, Bindings, Term
@@ -26,31 +28,27 @@ NOT_LATER = relations(["b", "m", "o", "s", "si", "e", "di", "fi"])
 CONTAINS = relations(["si", "e", "di", "fi"])
 
 
-@dataclass(frozen=True, slots=True)
-class Parameter:
+class Parameter(msgspec.Struct, frozen=True):
     """A constant of plans: what the situation was asserted with."""
 
     number: int
 
 
-@dataclass(frozen=True, slots=True)
-class Result:
+class Result(msgspec.Struct, frozen=True):
     """A constant of plans: what a step returns. It differs from everything that is known before."""
 
     step: int
     number: int
 
 
-@dataclass(frozen=True, slots=True)
-class Unnamed:
+class Unnamed(msgspec.Struct, frozen=True):
     """A constant of plans: something that exists as an effect, and that nothing can name."""
 
     step: int
     number: int
 
 
-@dataclass(frozen=True, slots=True)
-class Step:
+class Step(msgspec.Struct, frozen=True):
     """One action of a plan; `offset` is added to the variables of its schema."""
 
     number: int
@@ -67,8 +65,7 @@ class Step:
             yield Effect(effect.atom.shifted(self.offset), effect.relation)
 
 
-@dataclass(frozen=True, slots=True)
-class Link:
+class Link(msgspec.Struct, frozen=True):
     """`atom`, from `producer`, supports condition number `condition` of `consumer`.
 
     `throughout`: it is needed until the consumer has ended, else only when it starts. `maintained`: it
@@ -86,8 +83,7 @@ class Link:
     lost: bool = False
 
 
-@dataclass(frozen=True, slots=True)
-class Use:
+class Use(msgspec.Struct, frozen=True):
     """An assumption that the plan rests on, or (not `required`) only brings in."""
 
     assumption: str

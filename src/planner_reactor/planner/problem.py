@@ -4,22 +4,22 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+import msgspec
+
 from planner_reactor.logic.formulas import Atom, Term
 from planner_reactor.planner.beliefs import Beliefs
 from planner_reactor.planner.plan import END
 from planner_reactor.planner.theory import Theory
 
 
-@dataclass(frozen=True, slots=True)
-class Truth:
+class Truth(msgspec.Struct, frozen=True):
     """What holds at the start; `lost` if it may have ceased meanwhile, for all that is known."""
 
     atom: Atom
     lost: bool = False
 
 
-@dataclass(frozen=True, slots=True)
-class Goal:
+class Goal(msgspec.Struct, frozen=True):
     """An atom that must hold for `consumer`; `relation` leads from its interval to the consumer's."""
 
     atom: Atom
@@ -29,8 +29,7 @@ class Goal:
     depth: int = 0
 
 
-@dataclass(frozen=True, slots=True)
-class Problem:
+class Problem(msgspec.Struct, frozen=True):
     """From `truths` to `goals`, whose variables count from 0 up to `variables`.
 
     `forbidden` abstract schemas may not be used (they stand higher in the hierarchy), nor may `barred`

@@ -10,7 +10,9 @@ always give the same refinement, so that planning in increments and planning ane
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
+
+from msgspec.structs import replace
 
 from planner_reactor.logic.domain import ActionSchema
 from planner_reactor.logic.formulas import Atom, Numeral, Term, filled, variables

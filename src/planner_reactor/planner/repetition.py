@@ -8,7 +8,9 @@ cost little more than one.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+
+import msgspec
+from msgspec.structs import replace
 
 from planner_reactor.logic.formulas import Atom, Term, variables
 from planner_reactor.planner.beliefs import Beliefs, told_apart
@@ -17,8 +19,7 @@ from planner_reactor.planner.problem import Goal
 from planner_reactor.planner.theory import Theory
 
 
-@dataclass(frozen=True, slots=True)
-class Part:
+class Part(msgspec.Struct, frozen=True):
     """The steps, links and goals of a plan that solve one group: `steps[first:last]`, `links[start:stop]`."""
 
     goals: tuple[Atom, ...]

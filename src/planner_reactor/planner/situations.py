@@ -7,15 +7,15 @@ everything that follows for others: its sub-situations, what it rests on, what h
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+
+import msgspec
 
 from planner_reactor.logic.formulas import Atom, Numeral, Term
 from planner_reactor.planner.beliefs import in_doubt
 from planner_reactor.planner.structure import Action, Tree, renamed
 
 
-@dataclass(frozen=True, slots=True)
-class Situation:
+class Situation(msgspec.Struct, frozen=True):
     """An abstract action as a situation: constants are part of it, None stands for what it is asserted
     with.
     """
@@ -28,8 +28,7 @@ class Situation:
         return Situation(self.schema, tuple(a if a is None else constants.get(a, a) for a in self.arguments))
 
 
-@dataclass(frozen=True, slots=True)
-class Context:
+class Context(msgspec.Struct, frozen=True):
     """What a situation may count on, whoever asserts it.
 
     `granted` tells for each executability condition whether it lasts while the situation does. `replayed`
@@ -42,8 +41,7 @@ class Context:
     forbidden: frozenset[str] = frozenset()
 
 
-@dataclass(frozen=True, slots=True)
-class Child:
+class Child(msgspec.Struct, frozen=True):
     """A sub-situation as one call uses it."""
 
     situation: Situation
@@ -56,8 +54,7 @@ class Child:
         return Child(self.situation.renamed(constants), arguments, self.granted, self.replayed)
 
 
-@dataclass(frozen=True, slots=True)
-class Refinement:
+class Refinement(msgspec.Struct, frozen=True):
     """How a situation is made concrete; `tree` is None if no plan was found.
 
     `cleanup` has to be done if it fails after one of the actions `upsets`. `required` are the assumptions

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Literal, TypeAlias
+
+import msgspec
 
 from planner_reactor.link.messages import Adaptation
 
@@ -12,8 +13,7 @@ Cause: TypeAlias = Literal["normal", "forced"]
 StepKind: TypeAlias = Literal["refine", "relax", "reinstate", "watch"]
 
 
-@dataclass(frozen=True, slots=True)
-class Step:
+class Step(msgspec.Struct, frozen=True):
     """What one step did: worked on a `situation`, for the sake of an `assumption` (or ''), and what it
     issued.
     """
@@ -26,8 +26,7 @@ class Step:
     purpose: str = ""
 
 
-@dataclass(frozen=True, slots=True)
-class Relaxation:
+class Relaxation(msgspec.Struct, frozen=True):
     """One assumption given up or taken back. `adaptations` were issued for it; `done` when the last
     one was.
     """

@@ -9,16 +9,16 @@ expresses is made stricter: first what waits for nothing, then the rest.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from typing import TypeAlias
+
+import msgspec
 
 from planner_reactor.logic.allen import inverse
 from planner_reactor.logic.formulas import Term
 from planner_reactor.planner.plan import BEFORE, CONTAINS, Plan, Result
 
 
-@dataclass(frozen=True, slots=True)
-class Action:
+class Action(msgspec.Struct, frozen=True):
     """A step of a finished plan: `arguments` are constants, `results` what it returns."""
 
     name: str
@@ -31,35 +31,30 @@ class Action:
         return Action(self.name, self.abstract, tuple(constants.get(a, a) for a in self.arguments), self.results)
 
 
-@dataclass(frozen=True, slots=True)
-class Run:
+class Run(msgspec.Struct, frozen=True):
     """One action."""
 
     action: Action
 
 
-@dataclass(frozen=True, slots=True)
-class InOrder:
+class InOrder(msgspec.Struct, frozen=True):
     parts: tuple[Tree, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class Together:
+class Together(msgspec.Struct, frozen=True):
     """All of them are needed, in any order."""
 
     parts: tuple[Tree, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class During:
+class During(msgspec.Struct, frozen=True):
     """The action goes on for as long as the rest takes."""
 
     action: Action
     inner: Tree
 
 
-@dataclass(frozen=True, slots=True)
-class Choice:
+class Choice(msgspec.Struct, frozen=True):
     """If the test stops, `then`, else `otherwise`."""
 
     test: Action
@@ -206,8 +201,7 @@ class _Order:
         return _in_order([self._composed(early), self._composed(late)])
 
 
-@dataclass(frozen=True, slots=True)
-class _Block:
+class _Block(msgspec.Struct, frozen=True):
     """A composition that is ordered as one; sets of steps are bits."""
 
     tree: Tree
