@@ -14,6 +14,7 @@ from planner_reactor.experiments.comparison import Row
 from planner_reactor.experiments.figures import draw
 from planner_reactor.experiments.measures import Measures
 from planner_reactor.experiments.narrative import Narrator
+from planner_reactor.experiments.overview import draw_overview
 from planner_reactor.experiments.papers_run import Pays, Replay
 from planner_reactor.experiments.snapshots import reactor_at
 from planner_reactor.rs.printer import show
@@ -44,9 +45,11 @@ def write_page(out: Path, replayed: Replay, pays: Sequence[Pays]) -> list[Path]:
     events = replayed.theirs.loop.trace.events
     written = draw(events, out, beside=True, relaxed=replayed.relaxed.loop.trace.events)
     pictures = [path for path in written if path.suffix == ".svg"]
+    overview = draw_overview(replayed.ours.loop.trace.events, out)
     parts = [
         "<h1>A program that is rewritten while it runs</h1>",
         f"<p>{ABOUT}</p>",
+        *(_picture(path) for path in overview if path.suffix == ".svg"),
         "<h2>The papers' figures and ours</h2>",
         comparison_table(replayed.rows),
         *(f'<p class="note">{escape(note)}</p>' for note in telling.PAPERS_NOTES),
@@ -62,7 +65,7 @@ def write_page(out: Path, replayed: Replay, pays: Sequence[Pays]) -> list[Path]:
     ]
     page = _page("A program that is rewritten while it runs", parts)
     (out / "index.html").write_text(page, encoding="utf-8")
-    return written
+    return [*overview, *written]
 
 
 def comparison_table(rows: Iterable[Row]) -> str:

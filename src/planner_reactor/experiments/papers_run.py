@@ -21,12 +21,9 @@ from planner_reactor.experiments.measures import Measures, measure
 from planner_reactor.experiments.runs import Faults, Ran, Relax, Run, perform, the_domain
 from planner_reactor.experiments.schedules import in_turn
 from planner_reactor.workcell import telling
-from planner_reactor.workcell.papers import papers_calibration, papers_faults, planner_durations
+from planner_reactor.workcell.papers import PAPERS_RELAXED, papers_calibration, papers_faults, planner_durations
 
 SEED = 1
-RELAXED: Relax = ("AQ", "AS")
-"""What the papers' planner relaxed by choice."""
-
 PAYS_UNTIL = 1200.0
 ALL_RELAXED_BY = 60.0
 """Seconds after which a run of ours has relaxed whatever there is."""
@@ -64,7 +61,7 @@ def their_run() -> Run:
     until = planner_durations().until_s
     return Run(
         seed=SEED,
-        relax=RELAXED,
+        relax=PAPERS_RELAXED,
         planner_time="papers",
         calibration=papers_calibration(),
         faults=papers_faults,
@@ -74,7 +71,7 @@ def their_run() -> Run:
 
 def our_run() -> Run:
     """The same on our own clock."""
-    return Run(seed=SEED, relax=RELAXED, faults=papers_faults, until=planner_durations().until_s)
+    return Run(seed=SEED, relax=PAPERS_RELAXED, faults=papers_faults, until=planner_durations().until_s)
 
 
 def replay(watch: Callable[[Loop], object] = lambda loop: None) -> Replay:

@@ -18,6 +18,9 @@ from planner_reactor.workcell.reading import parse_toml
 
 FILE = "papers_1994.toml"
 
+PAPERS_RELAXED = ("AQ", "AS")
+"""The assumptions that the papers' planner relaxed by choice."""
+
 
 class PlannerDurations(msgspec.Struct, frozen=True):
     """Seconds that the planner of 1994 took; `normal` by assumption, for all adaptations of its relaxation."""
