@@ -22,7 +22,7 @@ from planner_reactor.rs.terms import Process, Program
 from planner_reactor.rs.vocabulary import BUILT_IN
 from planner_reactor.runtime import Aborted, Budgets, Executer, Host, Scheduler, VirtualClock
 
-PROGRAMS = int(os.environ.get("CONFORMANCE_PROGRAMS", "400"))
+PROGRAMS = int(os.environ.get("CONFORMANCE_PROGRAMS", "1500"))
 CHUNK = 50
 MOST_STEPS = 60
 

@@ -32,7 +32,7 @@ def drawn(written: Written) -> list[Path]:
 
 
 def test_every_figure_of_the_papers_is_there_as_png_and_svg(drawn: list[Path]) -> None:
-    assert [path.name[:5] for path in drawn] == [f"fig{n:02d}" for n in PAPERS for _ in range(2)]
+    assert [path.name[:5] for path in drawn] == [f"fig{n:02d}" for n in PAPERS for _ in range(2)] + ["overv"] * 2
     assert all(path.read_bytes().startswith(b"\x89PNG") for path in drawn if path.suffix == ".png")
     assert all(b"<svg" in path.read_bytes()[:2000] for path in drawn if path.suffix == ".svg")
 

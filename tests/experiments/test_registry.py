@@ -22,7 +22,7 @@ def test_the_papers_run_leaves_a_page_that_needs_no_network(written: Written) ->
     page = (written.folder / "index.html").read_text(encoding="utf-8")
     found = written.found
     assert written.progress == [(0, 3), (1, 3), (2, 3), (3, 3)]
-    assert page.count("data:image/svg+xml;base64,") == 11
+    assert page.count("data:image/svg+xml;base64,") == 12
     assert "http" not in page
     assert json.loads((written.folder / "papers.json").read_text())["rows"] == found["rows"]
     assert found["violations"] == []
