@@ -69,6 +69,17 @@ def test_what_a_page_says_a_command_prints_is_what_it_prints(block: Block) -> No
             printed(command)
 
 
+def test_the_program_on_the_first_screen_runs_as_it_says() -> None:
+    """Its files are named where they are shown."""
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    files = dict(re.findall(r"`(\w+\.(?:rsl|py))`[^`]*```\w*\n(.*?)```", text, re.DOTALL))
+    sessions = re.findall(r"^\$ (?:\.venv/bin/)?(planner-reactor .+)\n((?:(?!```).+\n)+)", text, re.MULTILINE)
+    assert files
+    assert sessions
+    for command, wanted in sessions:
+        assert not difference(wanted, printed(command, files))
+
+
 @pytest.mark.parametrize("block", found(["rsl"]), ids=str)
 def test_programs_on_a_page_can_be_loaded(block: Block) -> None:
     """The note names the processes of hosts that the program uses."""
@@ -88,7 +99,7 @@ def test_domains_on_a_page_can_be_read(block: Block) -> None:
     assert not list(problems)
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
+@pytest.mark.parametrize("page", [*PAGES, ROOT / "README.md", ROOT / "CHANGELOG.md"], ids=lambda page: page.stem)
 def test_links_lead_somewhere(page: Path) -> None:
     for link in links(page):
         if re.match(r"\w+:", link):

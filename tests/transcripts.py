@@ -13,10 +13,11 @@ import os
 import re
 import runpy
 import shlex
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import chdir, redirect_stderr, redirect_stdout
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from types import MappingProxyType
 
 from planner_reactor import cli
 
@@ -45,9 +46,11 @@ def transcript(file: Path) -> str:
     return "\n".join(f"$ {command}\n{printed(command)}" for command in commands_of(file))
 
 
-def printed(command: str) -> str:
-    """What a command prints, run where the examples are seen and what is written is forgotten."""
+def printed(command: str, files: Mapping[str, str] = MappingProxyType({})) -> str:
+    """What a command prints, run where the examples and these files are seen and what is written is forgotten."""
     with TemporaryDirectory() as folder, chdir(folder):
+        for name, text in files.items():
+            Path(name).write_text(text, encoding="utf-8")
         for seen in ("examples", "src"):
             os.symlink(ROOT / seen, seen)
         found = io.StringIO()
