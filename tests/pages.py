@@ -10,9 +10,11 @@ import re
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from types import ModuleType
 
 from planner_reactor.cli.application import NAME
 from planner_reactor.cli.later import LATER
+from planner_reactor.logic import itl_syntax
 from planner_reactor.rs import grammar
 from tests.transcripts import examples
 
@@ -76,10 +78,10 @@ def rows(page: Path, heading: str) -> list[list[str]]:
 # ------------------------------------------------------------------------------------------ parts made from code
 
 
-def _grammar() -> str:
-    """The grammar, as the docstring of the module says it."""
-    assert grammar.__doc__ is not None
-    lines = [line[4:] for line in grammar.__doc__.splitlines() if line.startswith("    ")]
+def _grammar_of(module: ModuleType) -> str:
+    """A grammar, as the docstring of the module says it."""
+    assert module.__doc__ is not None
+    lines = [line[4:] for line in module.__doc__.splitlines() if line.startswith("    ")]
     return "```text\n" + "\n".join(lines) + "\n```\n"
 
 
@@ -134,8 +136,9 @@ def _examples() -> str:
 
 MADE: Mapping[str, Callable[[], str]] = {
     "examples": _examples,
-    "grammar": _grammar,
+    "grammar": lambda: _grammar_of(grammar),
     "imports": _imports,
+    "itl_grammar": lambda: _grammar_of(itl_syntax),
     "later": _later,
 }
 

@@ -1,22 +1,23 @@
-"""The grammar of a domain text `*.itl`: from tokens to the sentences that it consists of, nothing resolved
-yet.
+"""The grammar of a domain text `*.itl`: from tokens to the sentences that it consists of, nothing resolved yet.
 
-    sentence    = assumption | goal | rule | persistence | fact | schema assumption  = "atp_assumption" NAME
-    "(" [names] ")" {"likelihood" NUMBER | "monitor" monitor | "reinstatable"} ";" monitor     = "flag"
-    NUMBER | "reaction" goal        = "atp_goal" NAME ["forall" names ":"] clause ["=>" clause] ";" rule
-    = "atp_rule" ["forall" names ":"] clause ("=>" | "<=>") clause ";" persistence = "atp_persistence"
-    ["forall" names ":"] atom "while" atom {"and" atom} ";" fact        = "atp_fact" clause ";" schema
-    = "atp_actionschema" NAME ["<" [names] ">" "<" [names] ">"] {"senses" | "cleanup"}
-                  {"intervals" names ";" | ("input" | "output" | "intervals") ":" names [";"] | LABEL ":"
-                  clauses} "endactionschema" [NAME] [";" | ":"]
+    sentence    = assumption | goal | rule | persistence | fact | schema
+    assumption  = "atp_assumption" NAME "(" [names] ")" {"likelihood" NUMBER | "monitor" monitor | "reinstatable"} ";"
+    monitor     = "flag" NUMBER | "reaction"
+    goal        = "atp_goal" NAME ["forall" names ":"] clause ["=>" clause] ";"
+    rule        = "atp_rule" ["forall" names ":"] clause ("=>" | "<=>") clause ";"
+    persistence = "atp_persistence" ["forall" names ":"] atom "while" atom {"and" atom} ";"
+    fact        = "atp_fact" clause ";"
+    schema      = "atp_actionschema" NAME ["<" [names] ">" "<" [names] ">"] {"senses" | "cleanup"}
+                  {"intervals" names ";" | ("input" | "output" | "intervals") ":" names [";"] | LABEL ":" clauses}
+                  "endactionschema" [NAME] [";" | ":"]
     clauses     = clause {";" clause} [";"]
     clause      = ["Exists" names ":"] literal {"and" literal}
     literal     = atom ["@" NAME] | "(" clause ")" ["@" NAME] | "[" clause "]" ["@" NAME]
                 | "ITL" "(" NAME "," relation "," NAME ")" | NAME "/=" NAME
     relation    = NAME | "[" NAME {[","] NAME} "]"
 
-`LABEL` is presumes, applicability, executability, effects, otherwise or expansions; labels may be
-capitalised. A sentence that is wrong is reported and skipped, so that one reading finds several errors.
+`LABEL` is presumes, applicability, executability, effects, otherwise or expansions; labels may be capitalised. A
+sentence that is wrong is reported and skipped, so that one reading finds several errors.
 """
 
 from __future__ import annotations
