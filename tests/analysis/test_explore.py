@@ -1,4 +1,4 @@
-"""Safe adaptation explored: drain × REASSERT × disable × cancel on small reactors (R §5.5, `semantics.md`)."""
+"""Safe adaptation explored: drain × REASSERT × disable × cancel on small reactors (R §5.5, docs/language.md)."""
 
 from __future__ import annotations
 

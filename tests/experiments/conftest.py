@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from planner_reactor.experiments import papers_run
+from planner_reactor.experiments import papers
 from planner_reactor.experiments.papers_run import Replay, replay
 from planner_reactor.experiments.registry import EXPERIMENTS
 
@@ -34,7 +34,7 @@ def written(replayed: Replay, tmp_path_factory: pytest.TempPathFactory) -> Writt
     """The experiment, of this replay."""
     folder, seen = tmp_path_factory.mktemp("papers"), list[tuple[int, int]]()
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(papers_run, "replay", lambda: replayed)
+        patch.setattr(papers, "replay", lambda: replayed)
         run = EXPERIMENTS["papers"].run
         found = run(folder, trials=None, workers=1, watch=lambda done, of: seen.append((done, of)))
     return Written(folder, found, seen)

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from msgspec.structs import replace
 from pathlib import Path
 
 import pytest
+from msgspec.structs import replace
 
 from planner_reactor.experiments.measures import Measures, measure
 from planner_reactor.experiments.papers_run import Replay

@@ -17,7 +17,7 @@ from planner_reactor.logic.formulas import Atom, Numeral
 from planner_reactor.logic.reader import check_domain, read_domain
 
 NOTATION = Path(__file__).with_name("notation.itl")
-"""The domain of the tried derivation (`planning.md`): a file written in its notation must load."""
+"""The domain of a derivation that was tried before: a file written in its notation must load."""
 
 SCHEMA = """
 atp_actionschema Act <x><y>

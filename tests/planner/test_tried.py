@@ -1,4 +1,4 @@
-"""The domain of the tried derivation (`planning.md`) yields what was tried: counts, sequence, every
+"""The domain of a derivation that was tried before yields what was tried: counts, sequence, every
 assumption set.
 """
 

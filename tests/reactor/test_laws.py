@@ -1,4 +1,4 @@
-"""Each law is seen to be broken when a defect is seeded, and by that law (`semantics.md`, Laws)."""
+"""Each law is seen to be broken when a defect is seeded, and by that law (docs/reactor.md, Laws)."""
 
 from __future__ import annotations
 

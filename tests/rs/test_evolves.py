@@ -1,4 +1,4 @@
-"""Each rule of the semantics, by its id: what it says, and what it does not (`semantics.md`)."""
+"""Each rule of the semantics, by its id: what it says, and what it does not (docs/language.md)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The algebraic laws of `semantics.md`, on random terms: those that hold, and those that must fail."""
+"""The algebraic laws of docs/language.md, on random terms: those that hold, and those that must fail."""
 
 from __future__ import annotations
 

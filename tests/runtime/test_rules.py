@@ -1,4 +1,4 @@
-"""The rules of semantics.md for processes without situations, as the executer keeps them: one section per
+"""The rules of docs/language.md for processes without situations, as the executer keeps them: one section per
 rule id.
 """
 

@@ -1,7 +1,7 @@
 """When two processes are the same: strong bisimilarity with outcomes, by partition refinement.
 
 Two processes are equal if they offer the same labels (passing time included) into equal states, and end alike: with
-the same outcome and, if `bindings` are visible, the same results. Algebraic laws (`semantics.md`, Laws) are claims of
+the same outcome and, if `bindings` are visible, the same results. Algebraic laws (docs/language.md, Laws) are claims of
 this kind. Causes of aborts and where a term stood in the text are not seen.
 """
 

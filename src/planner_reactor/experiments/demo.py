@@ -17,7 +17,8 @@ from rich.text import Text
 
 from planner_reactor.experiments.loop import Loop
 from planner_reactor.experiments.narrative import Narrator
-from planner_reactor.experiments.papers_run import Pays, Replay, as_data, replay, what_relaxing_buys
+from planner_reactor.experiments.papers import as_data
+from planner_reactor.experiments.papers_run import Pays, Replay, replay, what_relaxing_buys
 from planner_reactor.workcell import telling
 
 TITLE = "A robot works while its program is being rewritten"

@@ -42,7 +42,7 @@ def _of(module: str) -> Run:
 
 
 EXPERIMENTS: dict[str, Experiment] = {
-    "papers": Experiment("the papers' run on their clock and on ours: figures, tables, one page", _of("papers_run")),
+    "papers": Experiment("the papers' run on their clock and on ours: figures, tables, one page", _of("papers")),
     "faults": Experiment("random faults, seed after seed, with relaxing and without", _of("fault_trials")),
     "startup": Experiment("how long the planner thinks: to act, to be ideal, to relax", _of("startup")),
 }

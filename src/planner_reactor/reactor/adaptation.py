@@ -1,4 +1,4 @@
-"""Safe adaptation as a transaction (R §5.5, `semantics.md`).
+"""Safe adaptation as a transaction (R §5.5, docs/reactor.md).
 
 An adaptation becomes a process in RS that runs beside the reactor, with a root of its own that owns what it inhibits:
 

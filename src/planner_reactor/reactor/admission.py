@@ -1,4 +1,4 @@
-"""Is this adaptation one that may be applied? Checked whole before anything changes (`semantics.md`, law 1).
+"""Is this adaptation one that may be applied? Checked whole before anything changes (docs/reactor.md, law 1).
 
 `examine` gives the reactions to add, or raises `RefusedError` with one of the reasons below: a stable word for the
 planner, a sentence for people. Nothing is changed here.

@@ -1,7 +1,7 @@
 """The processes of R Tables 1 and 2 that act on situations, as controls of the executer.
 
-Each is a thin layer over `situations`: what it does to the store is there, what it means is in `semantics.md` and, case
-by case, in `rs.leaves`. SIT opens a body: what follows it serves the instance that it delivered.
+Each is a thin layer over `situations`: what it does to the store is there, what it means is in docs/reactor.md and,
+case by case, in `rs.leaves`. SIT opens a body: what follows it serves the instance that it delivered.
 """
 
 from __future__ import annotations

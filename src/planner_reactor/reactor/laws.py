@@ -1,4 +1,4 @@
-"""The reactor's laws, asked after every event (`semantics.md`, "The reactor's laws").
+"""The reactor's laws, asked after every event (docs/reactor.md, "The reactor's laws").
 
 Each law is a method that looks at the reactor as it stands, or at what has just happened, and gives a sentence for
 every breach. They use nothing that the reactor uses to keep them: counts are kept apart. Laws 1 to 7, 10, 11, 13 and
@@ -7,18 +7,39 @@ every breach. They use nothing that the reactor uses to keep them: counts are ke
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Hashable, Mapping
+from typing import Any, Protocol
 
 import msgspec
 
-from planner_reactor.reactor.adaptation import Transaction
-
-if TYPE_CHECKING:
-    from planner_reactor.reactor.reactor import Reactor
+from planner_reactor.link.channels import PerceptionChannel
+from planner_reactor.reactor.adaptation import Transaction, Transactions
+from planner_reactor.reactor.situations import Situations
+from planner_reactor.runtime import Scheduler
 
 CHECKED = (1, 2, 3, 4, 5, 6, 7, 10, 11, 13, 14)
 GRACE = 1e-6
+
+
+class Watched(Protocol):
+    """What the laws look at: a reactor."""
+
+    scheduler: Scheduler
+    situations: Situations
+    transactions: Transactions
+    perceptions: PerceptionChannel
+    failed: dict[str, float]
+
+    @property
+    def counts(self) -> Mapping[str, int]: ...
+
+    def version_of_label(self, label: int | None) -> int: ...
+
+    def is_live_owner(self, owner: Hashable) -> bool: ...
+
+    def resting_on(self, assumption: str) -> tuple[str, ...]: ...
+
+    def over_budget(self) -> str | None: ...
 
 
 class Violation(msgspec.Struct, frozen=True):
@@ -35,7 +56,7 @@ class Violation(msgspec.Struct, frozen=True):
 class Laws:
     """Watches one reactor. `violations` holds every breach, in order."""
 
-    def __init__(self, reactor: Reactor) -> None:
+    def __init__(self, reactor: Watched) -> None:
         self._reactor = reactor
         self.violations: list[Violation] = []
         self.ledgers: list[Callable[[], str]] = []  # further ledgers: "" or what does not balance

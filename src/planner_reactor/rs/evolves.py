@@ -1,6 +1,6 @@
 """evolves: the one readable statement of what RS means, on concrete values.
 
-R §4.4 and X App. B define `P -c-> Q`; `semantics.md` closes their gaps. The rules stand here in the order of
+R §4.4 and X App. B define `P -c-> Q`; docs/language.md closes their gaps. The rules stand here in the order of
 that page, one case each, with their ids: first the termination rules N1 to N10 (silent: they belong to the
 step that ends a component), then the transitions SEQ, PAR, COM, TIME; what each built-in leaf does is in
 `leaves`. The executer is an optimised interpreter of these rules and is held against them; `analysis`

@@ -1,4 +1,4 @@
-"""The steps of the leaves: tests, delays, ports, situations, guards (`semantics.md`, Transitions).
+"""The steps of the leaves: tests, delays, ports, situations, guards (docs/language.md, Transitions).
 
 Each built-in process has one function here, named after its rule; `steps` offers every step of a
 configuration and `elapsed` lets time pass (TIME: all sides together, and only when nothing is urgent). A step
@@ -14,6 +14,7 @@ from typing import TypeAlias
 import msgspec
 from msgspec.structs import replace
 
+from planner_reactor.rs.comparisons import TESTS
 from planner_reactor.rs.configurations import Config, Label, World
 from planner_reactor.rs.evolves import settle
 from planner_reactor.rs.expressions import is_number
@@ -38,7 +39,6 @@ from planner_reactor.rs.states import (
 )
 from planner_reactor.rs.store import Store
 from planner_reactor.rs.terms import Value
-from planner_reactor.rs.tests import TESTS
 
 
 class Step(msgspec.Struct, frozen=True):

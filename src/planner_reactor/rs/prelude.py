@@ -1,7 +1,7 @@
 """Schemas that every program may use, written in RS terms of the built-in processes.
 
 STREAM is printed in X §4.1.2 without a quantum, and is then Zeno: thousands of rendezvous at one instant.
-Ours waits a quantum after each (`semantics.md`, Transitions).
+Ours waits a quantum after each (docs/language.md, Transitions).
 """
 
 from __future__ import annotations

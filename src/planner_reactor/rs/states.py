@@ -1,4 +1,4 @@
-"""Run-time terms: what a process has become while it runs (`semantics.md`, "Run-time terms and store").
+"""Run-time terms: what a process has become while it runs (docs/language.md, "Run-time terms and store").
 
 `evolves` rewrites these terms. Legend, with the notation of the rules on the left:
 

@@ -1,4 +1,4 @@
-"""The store S = (I, H, D, Q, run): situation instances and what holds them back (`semantics.md`).
+"""The store S = (I, H, D, Q, run): situation instances and what holds them back (docs/language.md).
 
 An immutable value with one method per change; `settled` draws the consequences that belong to the same step:
 what is withdrawn or disabled and not in service ends as failed, what has ended cancels its descendants, a

@@ -2,7 +2,7 @@
 
 Reaching one is not an error of the executer: it aborts the nearest enclosing served body with cause `budget`, and the
 statistics name the definition. What no body encloses is a root; a root is never aborted by its budget of steps: its
-next round waits one quantum (semantics.md, STREAM).
+next round waits one quantum (docs/language.md, STREAM).
 """
 
 from __future__ import annotations

@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from types import MappingProxyType
 
+from planner_reactor.rs.comparisons import TESTS
 from planner_reactor.rs.terms import Number, Variable
-from planner_reactor.rs.tests import TESTS
 from planner_reactor.runtime.leaves import Never, Pass, Ran, Setting, Test, at_most, milliseconds
 from planner_reactor.runtime.ports import In, Out, Ports
 from planner_reactor.runtime.strands import Frame, Instruction
 
 
 def _test(setting: Setting) -> Test:
-    """The test itself is that of `rs.tests`; two integers, one of them constant, are compared at once."""
+    """The test itself is that of `rs.comparisons`; two integers, one of them constant, are compared at once."""
     rule, arguments = TESTS[setting.name], setting.arguments
 
     def holds(frame: Frame) -> bool:

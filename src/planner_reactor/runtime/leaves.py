@@ -184,7 +184,7 @@ def milliseconds(age: float, kernel: Kernel) -> float:
 
 
 def at_most(age: float, kernel: Kernel) -> float:
-    """Term[t] ends at any age up to t; in execution it is drawn (requirements S35)."""
+    """Term[t] ends at any age up to t; in execution it is drawn at random, in analysis it is an interval."""
     return kernel.scheduler.random("Term").uniform(0.0, age) if age > 0 else 0.0
 
 

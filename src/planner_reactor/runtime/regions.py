@@ -1,6 +1,6 @@
 """Regions of names: which slot of the frame a name has, and which names leave a process.
 
-`exported` follows the rules of `semantics.md`: what a process binds leaves it, except that the bodies of loops hide
+`exported` follows the rules of docs/language.md: what a process binds leaves it, except that the bodies of loops hide
 theirs (N8); what a definition binds does not reach this far, for a call binds its results only.
 """
 

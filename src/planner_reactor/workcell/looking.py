@@ -1,6 +1,6 @@
 """Basic processes that find out: Choose, AwaitArrival, Test, LocateTray, SlotVacant, Verify, AwaitReady.
 
-They are what relaxing an assumption adds to a reaction (R §8.3, `planning.md`): testing (AQ), choosing a
+They are what relaxing an assumption adds to a reaction (R §8.3): testing (AQ), choosing a
 variant (AS), looking into slots (AF, ACP), verifying (ACT), locating the tray again (ADT), waiting for
 downstream (ADD), waiting for what comes first (AO). While there is no picture they wait; unknown is never
 taken for no.
