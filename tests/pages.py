@@ -15,7 +15,7 @@ from types import ModuleType
 from planner_reactor.cli.application import NAME
 from planner_reactor.cli.later import LATER
 from planner_reactor.logic import itl_syntax
-from planner_reactor.rs import grammar
+from planner_reactor.rs import grammar, states
 from tests.transcripts import examples
 
 ROOT = Path(__file__).parent.parent
@@ -78,8 +78,8 @@ def rows(page: Path, heading: str) -> list[list[str]]:
 # ------------------------------------------------------------------------------------------ parts made from code
 
 
-def _grammar_of(module: ModuleType) -> str:
-    """A grammar, as the docstring of the module says it."""
+def _indented_in(module: ModuleType) -> str:
+    """A grammar or a legend: what stands indented in the docstring of the module."""
     assert module.__doc__ is not None
     lines = [line[4:] for line in module.__doc__.splitlines() if line.startswith("    ")]
     return "```text\n" + "\n".join(lines) + "\n```\n"
@@ -136,10 +136,11 @@ def _examples() -> str:
 
 MADE: Mapping[str, Callable[[], str]] = {
     "examples": _examples,
-    "grammar": lambda: _grammar_of(grammar),
+    "grammar": lambda: _indented_in(grammar),
     "imports": _imports,
-    "itl_grammar": lambda: _grammar_of(itl_syntax),
+    "itl_grammar": lambda: _indented_in(itl_syntax),
     "later": _later,
+    "runtime_terms": lambda: _indented_in(states),
 }
 
 

@@ -26,6 +26,7 @@ from planner_reactor.reactor.laws import CHECKED
 from planner_reactor.rs import checks
 from planner_reactor.rs.checks import check_addition
 from planner_reactor.rs.grammar import EXPRESSION_OPERATORS, PREFIX_MINUS, PROCESS_OPERATORS
+from planner_reactor.rs.leaves import RULES
 from planner_reactor.rs.parser import parse_program
 from planner_reactor.rs.terms import Program
 from planner_reactor.rs.vocabulary import BUILT_IN, NEVER_ENDS, Signature
@@ -161,6 +162,12 @@ def ends(signature: Signature) -> str:
     return f"at once, {how}" if signature.window == (0.0, 0.0) else how
 
 
+def test_every_leaf_with_a_rule_of_its_own_is_told() -> None:
+    told = {name for row in rows(LANGUAGE, "### Transitions") for name in re.findall(r"`(\w+)`", row[0])}
+    assert told == set(BUILT_IN) - {"STOP", "ABORT", "NIL", "IN", "OUT", "STREAM", "ASSUMONITOR", "HOLDMONITOR"}
+    assert set(RULES) <= told
+
+
 def test_every_cause_of_an_abort_is_told() -> None:
     rooms = [PACKAGE / room for room in ("rs", "runtime", "reactor")]
     code = "".join(file.read_text(encoding="utf-8") for room in rooms for file in room.glob("*.py"))
@@ -227,7 +234,7 @@ def test_the_kinds_of_perceptions_are_told() -> None:
 
 
 def test_the_laws_are_told_as_they_are_watched() -> None:
-    told = {int(row[0]): row[2] for row in rows(REACTOR, "## Its laws")}
+    told = {int(row[0]): row[2] for row in rows(REACTOR, "## The reactor's laws")}
     assert set(told) == set(range(1, 18))
     assert {law for law, watched in told.items() if watched == "not in this version"} == LATER_LAWS
     assert set(CHECKED) == set(told) - LATER_LAWS - OTHER_LAWS
