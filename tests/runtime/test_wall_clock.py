@@ -32,7 +32,7 @@ def test_a_sensor_thread_posts_a_signal() -> None:
     assert root.results == {"x": 3}
 
 
-def test_ten_thousand_waiting_reactions_cost_no_time() -> None:
+def test_ten_thousand_waiting_reactions_take_no_steps() -> None:
     executer = Executer(
         parse_program("All[n] = if GTR[n,0] then ((IN[n]<x> :; STOP) | All[n-1]) else NIL"),
         scheduler=Scheduler(WallClock()),
@@ -40,7 +40,7 @@ def test_ten_thousand_waiting_reactions_cost_no_time() -> None:
     )
     executer.start_process(parse_process("All[10000]"))
     executer.run(until=0.0)
-    begun, cpu = time.monotonic(), time.process_time()
-    executer.run(until=executer.scheduler.clock.read() + 0.3)
-    assert time.process_time() - cpu <= 0.02 * (time.monotonic() - begun)
+    steps = executer.statistics().steps
+    executer.run(until=executer.scheduler.clock.read() + 0.1)
+    assert executer.statistics().steps == steps
     assert executer.statistics().processes_live > 20_000

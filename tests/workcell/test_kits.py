@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import statistics
-import time
 from itertools import pairwise
 
 import pytest
@@ -88,8 +87,9 @@ def test_background_quality_and_mix_are_as_the_kit_says() -> None:
     assert sum(d["variant"] == "b" for d in seen) / len(seen) == pytest.approx(0.4, abs=0.04)
 
 
-def test_a_kit_costs_a_few_milliseconds_at_most() -> None:
+def test_a_kit_costs_few_events() -> None:
+    """What makes the cell cheap: nothing in it is polled."""
     rig = Rig(target=40)
-    began = time.process_time()
     build_kits(rig, trusting_kit)
-    assert (time.process_time() - began) / 40 < 0.008  # measured: 0.001 s
+    assert rig.trace is not None
+    assert rig.trace.count / 40 < 30
