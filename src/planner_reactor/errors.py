@@ -102,7 +102,12 @@ def caret(line: str, column: int) -> str:
 
 
 def nearest(name: str, candidates: Iterable[str]) -> str:
-    """`did you mean X?` for the closest candidate, or an empty string."""
+    """`did you mean X?` for the closest candidate, or an empty string.
+
+    The first letter is seldom mistaken: where it differs, all else has to be closer (`Try` does not mean `GTR`).
+    """
     by_folded = {c.lower(): c for c in candidates}
-    found = get_close_matches(name.lower(), by_folded, n=1, cutoff=0.6)
+    folded = name.lower()
+    alike = [c for c in by_folded if c[:1] == folded[:1]]
+    found = get_close_matches(folded, alike, n=1, cutoff=0.6) or get_close_matches(folded, by_folded, n=1, cutoff=0.75)
     return f"did you mean {by_folded[found[0]]}?" if found else ""

@@ -200,7 +200,7 @@ def test_a_broken_law_ends_with_1(call: Call, monkeypatch: pytest.MonkeyPatch) -
         (("--until", "-0.5"), "until is -0.5, expected"),
         (("--cell", "evnts"), "unknown cell evnts, did you mean events?"),
         (("--clock", "sundial"), "unknown clock sundial, expected one of: virtual, wall"),
-        (("--planner", "outline"), "unknown planner outline, did you mean inline?"),
+        (("--planner", "outline"), "unknown planner outline, expected one of: inline, process"),
         (("--mode", "drian"), "unknown mode drian, did you mean drain?"),
         (("--planner-time", "soon"), "planner time is soon, expected measured, papers, or seconds, 0 or more"),
         (("--planner-time", "-1"), "planner time is -1, expected measured"),

@@ -70,7 +70,7 @@ def test_an_error_in_the_code_of_a_host_is_told(call: Call) -> None:
 def test_run_for_people(call: Call) -> None:
     ran = call("run", "cell.rsl", "Pair")
     assert ran.out.splitlines() == [
-        "Pair: stop at 0.000 s", "  x = 7", "1 events, 1 rendezvous, 0 processes live",
+        "Pair: stop at 0.000 s", "  x = 7", "1 event, 1 rendezvous, 0 processes live",
     ]  # fmt: skip
     assert "IN waits at port r" in call("run", "cell.rsl", "Waits").out
 

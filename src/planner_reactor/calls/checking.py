@@ -99,8 +99,9 @@ def _actions(domain: Domain, host: Host) -> Iterator[Diagnostic]:
 
 
 def _assumptions(domain: Domain, host: Host) -> Iterator[Diagnostic]:
+    sensed = {name.partition("(")[0] for name in host.assumptions}  # `A(x)` tells of A
     for assumption in domain.assumptions.values():
-        if assumption.name not in host.assumptions:
+        if assumption.name not in sensed:
             hint = nearest(assumption.name, host.assumptions) or f"host {host.name} does not sense it"
             place = assumption.place or Place(1, 1)
             message = f"nobody can tell whether {assumption.name} holds"

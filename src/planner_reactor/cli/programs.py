@@ -44,8 +44,9 @@ def _show_run(process: str, result: dict[str, Any]) -> None:
     print(f"{process}: {result['outcome']}{cause} at {result['time_s']:.3f} s")
     for name, value in result["results"].items():
         print(f"  {name} = {value}")
-    counts = f"{result['events']} events, {result['rendezvous']} rendezvous, {result['processes_live']} processes live"
-    print(counts)
+    events, live = result["events"], result["processes_live"]
+    processes = "process" if live == 1 else "processes"
+    print(f"{events} event{'s'[: events != 1]}, {result['rendezvous']} rendezvous, {live} {processes} live")
     for port, side in result["waiting"].items():
         print(f"  {side} waits at port {port}")
     if result["zeno"]:

@@ -24,6 +24,9 @@ from planner_reactor.trace import Trace
 LATENCY = 0.001
 """Seconds that a message takes from one side to the other."""
 
+LOOK_AGAIN = 1.0
+"""Seconds after which a world is asked again whether it is finished, if nothing is traced meanwhile."""
+
 HostMaker = Callable[[Scheduler, Trace], Host]
 
 
@@ -105,11 +108,19 @@ class Loop:
         if self.host.world is not None:
             self.host.world.start(self.scheduler)
         self.scheduler.soon(self._turn)
+        self._look()
         self.reactor.executer.run(until=until)
         self.reactor.laws.check()
         self.costs.simulated = self.scheduler.now
         self.costs.wall = time.perf_counter() - wall
         self.costs.cpu = time.process_time() - cpu
+
+    def _look(self) -> None:
+        """A world may finish without a word: ask it now and then, as long as anything goes on."""
+        if self._stop_at():
+            self.scheduler.stop()
+        elif not self.scheduler.idle:
+            self.scheduler.call_after(LOOK_AGAIN, self._look)
 
     # -- the planner's side
 

@@ -113,9 +113,13 @@ class Transactions:
 
     def ended(self, root: Root) -> None:
         """A root of the executer has ended: if it was a script, its transaction is over."""
-        transaction = self._by_root.pop(root, None)
-        if transaction is None:
-            return
+        transaction = self._by_root.get(root)
+        if transaction is not None:
+            # what the last POST adds comes to life within this step: it is over when the step is
+            self._executer.after_step(lambda: self._close(root, transaction))
+
+    def _close(self, root: Root, transaction: Transaction) -> None:
+        del self._by_root[root]
         if transaction.timer is not None:
             transaction.timer.cancel()
         transaction.state = "applied" if root.outcome == "stop" else "timed_out"

@@ -14,7 +14,7 @@ import msgspec
 
 from planner_reactor.link.channels import PerceptionChannel
 from planner_reactor.reactor.adaptation import Transaction, Transactions
-from planner_reactor.reactor.situations import Situations
+from planner_reactor.reactor.situations import Situations, named
 from planner_reactor.runtime import Scheduler
 
 CHECKED = (1, 2, 3, 4, 5, 6, 7, 10, 11, 13, 14)
@@ -173,7 +173,7 @@ class Laws:
         for situation in self._reactor.situations.held:
             for inhibition in situation.inhibitions:
                 if not self._reactor.is_live_owner(inhibition.owner):
-                    self.breach(5, f"{situation.name} is inhibited by {inhibition.owner}, which is gone")
+                    self.breach(5, f"{situation.name} is inhibited by {named(inhibition.owner)}, which is gone")
 
     def _perceptions(self) -> None:
         """Law 10: numbered without gaps, at least once."""

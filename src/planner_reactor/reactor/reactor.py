@@ -183,6 +183,7 @@ class Reactor:
             "adaptation_applied", id=adaptation.id, purpose=adaptation.purpose, assumptions=self.assumptions_in_use
         )
         self.perceive("adaptation_applied", str(adaptation.id))
+        self.settle_laws()
 
     def _forget(self, labels: Iterable[int]) -> None:
         """Their definitions are not needed any more."""

@@ -28,6 +28,11 @@ from planner_reactor.reactor.wakers import Waker
 Notice: TypeAlias = Callable[..., None]
 
 
+def named(owner: Hashable) -> str:
+    """An owner of inhibitions, for people: an assumption, or the root that runs a script."""
+    return str(owner[1]) if isinstance(owner, tuple) else str(getattr(owner, "name", owner))
+
+
 class Situations:
     """I, H, D, Q and run. `notice(kind, **fields)` is told of every change; it must not change the store."""
 
@@ -325,7 +330,7 @@ class Situations:
         self._held_by.setdefault(owner, []).append(situation)
         situation.held_back += kind != "inhibit"
         situation.disabled += kind == "assumption"
-        self._notice("inhibited", situation=situation.name, owner=str(owner), because=kind)
+        self._notice("inhibited", situation=situation.name, owner=named(owner), because=kind)
 
     def uninhibit(self, name: str, owner: Hashable) -> bool:
         """Take away this owner's latest inhibition of s; False (and no effect) if it has none."""
@@ -337,10 +342,10 @@ class Situations:
                 self._held_by[owner].remove(situation)
                 situation.held_back -= held.kind != "inhibit"
                 situation.disabled -= held.kind == "assumption"
-                self._notice("uninhibited", situation=name, owner=str(owner))
+                self._notice("uninhibited", situation=name, owner=named(owner))
                 self._release(situation)
                 return True
-        self._notice("foreign_uninhibit", situation=name, owner=str(owner))
+        self._notice("foreign_uninhibit", situation=name, owner=named(owner))
         return False
 
     def disable(self, name: str, assumption: str) -> None:

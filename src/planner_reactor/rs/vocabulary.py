@@ -106,7 +106,7 @@ def _adaptation() -> Iterable[Signature]:
     yield Signature("INHIBIT", _FIRST, window=AT_ONCE, outcomes=STOPS)
     yield Signature("UNINHIBIT", _FIRST, window=AT_ONCE, outcomes=STOPS)
     yield Signature("WAITINHIBIT", _FIRST, outcomes=STOPS)
-    yield Signature("DRAIN", _FIRST)
+    yield Signature("DRAIN", _FIRST, outcomes=STOPS)
     yield Signature("KILL", ("label",))
     yield Signature("E", ("label",), outcomes=STOPS)
     yield Signature("ADD", (), ("m",), outcomes=STOPS)
@@ -118,7 +118,7 @@ def _adaptation() -> Iterable[Signature]:
 def _monitors() -> Iterable[Signature]:
     """R §8.3; periods are milliseconds."""
     yield Signature("ASSUMONITOR", ("assumption", "number"), outcomes=NEVER_ENDS)
-    yield Signature("HOLDMONITOR", ("assumption", "number"))
+    yield Signature("HOLDMONITOR", ("assumption", "number"), outcomes=NEVER_ENDS)
     yield Signature("REPORT", ("symbol",), open_inputs=True, window=AT_ONCE, outcomes=STOPS)
 
 

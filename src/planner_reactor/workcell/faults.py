@@ -80,7 +80,8 @@ class FaultSchedule:
             self._scheduler.call_after(AGAIN_S, partial(self._due, fault))
 
     def _attempt(self, fault: Fault) -> bool:
-        if not self._world.strike(fault.kind, **fault.parameters):
+        given = {**self._world.faults[fault.kind], **fault.parameters}
+        if not self._world.strike(fault.kind, **given):
             return False
         self.waiting.remove(fault)
         return True
