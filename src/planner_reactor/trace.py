@@ -19,6 +19,10 @@ if TYPE_CHECKING:
 Sink = Callable[["Event"], None]
 
 
+CHECKPOINT = 1_000
+"""After so many events the hash is kept, so that beginnings of runs can be compared."""
+
+
 class Event(msgspec.Struct, frozen=True):
     """One timed event. `data` is JSON-able."""
 
@@ -39,6 +43,7 @@ class Trace:
         self.count = 0
         self.events: list[Event] = []
         self.sinks: list[Sink] = []
+        self.checkpoint_hash = ""
         self._keep = keep
         self._digest = hashlib.sha256()
 
@@ -47,6 +52,8 @@ class Trace:
         self.count += 1
         event = Event(self.count, self.clock(), kind, data)
         self._digest.update(_encode(event))
+        if self.count == CHECKPOINT:
+            self.checkpoint_hash = self.hash
         if self._keep:
             self.events.append(event)
         for sink in self.sinks:
