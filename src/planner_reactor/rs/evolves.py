@@ -148,6 +148,8 @@ def _needed(process: Process, scope: Bindings) -> Bindings:
 
 def terminate(term: Run, store: Store, world: World, root: int) -> tuple[Run, Store]:
     """The term with every ending drawn that follows at once; an ended part of a `#` is left for `decide`."""
+    if term.at_rest:
+        return term, store
     if parts := parts_of(term):
         after = list(parts)
         for index, part in enumerate(parts):
@@ -326,6 +328,8 @@ def _quiet(config: Config, world: World) -> Config:
 
 def _undecided(term: Run, depth: int = 0) -> Iterator[tuple[int, tuple[int, ...]]]:
     """(how many `#` enclose it, path) of every `#` of which a part has ended."""
+    if term.at_rest:
+        return
     inner = depth
     if isinstance(term, Group) and term.operator == "#":
         inner = depth + 1

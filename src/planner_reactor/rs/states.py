@@ -22,8 +22,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from functools import lru_cache
-from typing import Literal, TypeAlias
+from functools import cached_property, lru_cache
+from typing import ClassVar, Literal, TypeAlias
 
 import msgspec
 from msgspec.structs import replace
@@ -63,6 +63,8 @@ class Reaction(msgspec.Struct, frozen=True):
 class Ended:
     """`ok.r` or `ab.r`. The cause is for traces and perceptions; the algebra sees only the outcome."""
 
+    at_rest: ClassVar[bool] = False
+
     ok: bool
     bindings: Bindings = ()
     cause: str = field(default="", compare=False)
@@ -70,6 +72,8 @@ class Ended:
 
 class Delivered(msgspec.Struct, frozen=True):
     """A SIT that has just delivered an instance: what follows it, if anything, is the instance's body."""
+
+    at_rest: ClassVar[bool] = False
 
     situation: str
     instance: InstanceNumber
@@ -84,6 +88,8 @@ class Leaf(msgspec.Struct, frozen=True):
     arguments have no value.
     """
 
+    at_rest: ClassVar[bool] = True
+
     name: str
     arguments: tuple[Value, ...] = ()
     results: tuple[str, ...] = ()
@@ -96,6 +102,8 @@ class Leaf(msgspec.Struct, frozen=True):
 class Await(msgspec.Struct, frozen=True):
     """`await_{s,k}<x>`; `again` holds the leaf of a REASSERT, to be repeated should the instance fail."""
 
+    at_rest: ClassVar[bool] = False
+
     instance: InstanceNumber
     results: tuple[str, ...]
     again: Leaf | None = None
@@ -104,6 +112,8 @@ class Await(msgspec.Struct, frozen=True):
 class Queued(msgspec.Struct, frozen=True):
     """An ASSERT held back: `ticket` finds it in the store's queue."""
 
+    at_rest: ClassVar[bool] = False
+
     ticket: InstanceNumber
     leaf: Leaf
 
@@ -111,45 +121,64 @@ class Queued(msgspec.Struct, frozen=True):
 class Waiting(msgspec.Struct, frozen=True):
     """A WAIT, WAITINHIBIT or DRAIN that has begun."""
 
+    at_rest: ClassVar[bool] = False
+
     name: str
     situation: str
 
 
-class Chain(msgspec.Struct, frozen=True):
+class _Composed(msgspec.Struct, frozen=True, dict=True, cache_hash=True):
+    """A term with live parts."""
+
+    @cached_property
+    def at_rest(self) -> bool:
+        """Can nothing in it end within the present step, whatever the store? Then settling passes it by."""
+        return all(part.at_rest for part in parts_of(self))  # type: ignore[arg-type]  # each that stands below is a Run
+
+
+class Chain(_Composed, frozen=True):
     operator: Literal[";", ":"]
     current: Run
     rest: Process
     scope: Bindings
 
 
-class Keep(msgspec.Struct, frozen=True):
+class Keep(_Composed, frozen=True):
     bindings: Bindings
     body: Run
 
+    @cached_property
+    def at_rest(self) -> bool:
+        return bool(self.bindings) and not isinstance(self.body, Keep) and self.body.at_rest
 
-class Export(msgspec.Struct, frozen=True):
+
+class Export(_Composed, frozen=True):
     """Only the `renamed` results (inner name, outer name) leave the body; none, for the body of a loop."""
 
     renamed: tuple[tuple[str, str], ...]
     body: Run
 
+    @cached_property
+    def at_rest(self) -> bool:
+        return bool(self.renamed or not isinstance(self.body, Export | Keep)) and self.body.at_rest
 
-class Group(msgspec.Struct, frozen=True):
+
+class Group(_Composed, frozen=True):
     operator: Literal["|", "&", "#"]
     parts: tuple[Run, ...]
 
 
-class Inverted(msgspec.Struct, frozen=True):
+class Inverted(_Composed, frozen=True):
     body: Run
 
 
-class Deciding(msgspec.Struct, frozen=True):
+class Deciding(_Composed, frozen=True):
     test: Run
     branches: If
     scope: Bindings
 
 
-class Testing(msgspec.Struct, frozen=True):
+class Testing(_Composed, frozen=True):
     """`A:;B` while A runs."""
 
     condition: Run
@@ -157,7 +186,7 @@ class Testing(msgspec.Struct, frozen=True):
     scope: Bindings
 
 
-class Round(msgspec.Struct, frozen=True):
+class Round(_Composed, frozen=True):
     """`A:;B` while B runs."""
 
     body: Run
@@ -165,7 +194,7 @@ class Round(msgspec.Struct, frozen=True):
     scope: Bindings
 
 
-class Spawning(msgspec.Struct, frozen=True):
+class Spawning(_Composed, frozen=True):
     """`A::B`: A runs, or has ended, beside the bodies spawned so far; `stopped` if an ended body has
     stopped."""
 
@@ -176,7 +205,7 @@ class Spawning(msgspec.Struct, frozen=True):
     stopped: bool = False
 
 
-class Serve(msgspec.Struct, frozen=True):
+class Serve(_Composed, frozen=True):
     situation: str
     instance: InstanceNumber
     reaction: Reaction
