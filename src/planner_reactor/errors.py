@@ -6,6 +6,7 @@
     │   └── DomainError              a planning domain (`*.itl`)
     ├── InputError(ValueError)       an argument, a fault list, a kit specification, a host module
     ├── BudgetError(RuntimeError)    a declared limit on size, depth, steps or instances was reached
+    ├── DiskError(OSError)           what should be durable could not be written, or read
     └── RefusedError(RuntimeError)   an adaptation that was not applied, and why
 
 A process that *aborts* is an outcome of the language, never one of these.
@@ -86,6 +87,10 @@ class BudgetError(PlannerReactorError, RuntimeError):
     def __init__(self, limit: str, message: str) -> None:
         self.limit = limit
         super().__init__(message)
+
+
+class DiskError(PlannerReactorError, OSError):
+    """What should be durable could not be written, or not be read."""
 
 
 class RefusedError(PlannerReactorError, RuntimeError):

@@ -1,0 +1,106 @@
+"""What the adaptations have made of a reactor: all that must survive a crash (docs/reactor.md, law 8).
+
+A value, changed only by the records of a journal: `after(adaptation)` is the one place where it is said what an applied
+adaptation comes to. The running reactor holds one, its journal another, and both must be equal. What it is *doing* (its
+situations, bodies, drains) is not kept: a crash ends that, and the world is sensed anew.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import msgspec
+from msgspec.structs import replace
+
+from planner_reactor.link.messages import Adaptation
+from planner_reactor.reactor.structure import REACTION
+from planner_reactor.rs.parser import parse_program
+from planner_reactor.rs.printer import show
+
+
+class Taken(msgspec.Struct, frozen=True):
+    """The ids of one epoch's adaptations that were taken: all up to `floor`, and some `above` it (law 6).
+
+    A planner numbers what it issues 1, 2, …, so that `above` stays short however long a reactor lives.
+    """
+
+    floor: int = 0
+    above: tuple[int, ...] = ()
+
+    def __contains__(self, number: object) -> bool:
+        return isinstance(number, int) and (0 < number <= self.floor or number in self.above)
+
+    def with_(self, number: int) -> Taken:
+        """These and one more."""
+        if number in self:
+            return self
+        floor, above = self.floor, {*self.above, number}
+        while floor + 1 in above:
+            floor += 1
+            above.remove(floor)
+        return Taken(floor, tuple(sorted(above)))
+
+
+class Committed(msgspec.Struct, frozen=True):
+    """The structure of a reactor: clauses by label, and what is known of situations and assumptions."""
+
+    clauses: Mapping[int, str] = msgspec.field(default_factory=dict)  # label → text of `P[label] = …`
+    versions: Mapping[str, int] = msgspec.field(default_factory=dict)  # of each situation that ever was
+    rests_on: Mapping[str, tuple[str, ...]] = msgspec.field(default_factory=dict)
+    adopted: tuple[str, ...] = ()
+    failed: tuple[str, ...] = ()
+    highest_label: int = 0
+    epoch: int = 0
+    taken: Taken = Taken()
+    halted: bool = False
+
+    def begun(self, adaptation: Adaptation) -> Committed:
+        """What it is once this adaptation was admitted: an older planner's are not, from here on (law 7)."""
+        if adaptation.epoch <= self.epoch:
+            return self
+        return replace(self, epoch=adaptation.epoch, taken=Taken())
+
+    def decided(self, number: int) -> Committed:
+        """What it is once an adaptation of its epoch was applied or came to nothing: its id is spent."""
+        return replace(self, taken=self.taken.with_(number))
+
+    def after(self, adaptation: Adaptation) -> Committed:
+        """What it is once this adaptation, which was admitted, has been applied."""
+        clauses = {n: text for n, text in self.clauses.items() if n not in adaptation.kills}
+        clauses |= clauses_of(adaptation)
+        versions, rests_on = dict(self.versions), dict(self.rests_on)
+        for change in adaptation.changes:
+            versions[change.situation] = versions.get(change.situation, 0) + 1
+            rests_on[change.situation] = change.assumptions
+        for situation in adaptation.removed:
+            versions[situation] = versions.get(situation, 0) + 1
+            rests_on.pop(situation, None)
+        return replace(
+            self,
+            clauses=clauses,
+            versions=versions,
+            rests_on=rests_on,
+            adopted=tuple(sorted({*self.adopted, *adaptation.adopts} - {*adaptation.drops})),
+            highest_label=max([self.highest_label, *adaptation.adds]),
+            taken=self.taken.with_(adaptation.id),
+        )
+
+    def told(self, assumption: str, *, holds: bool) -> Committed:
+        """What it is once it is known that an assumption fails, or holds again."""
+        others = {a for a in self.failed if a != assumption}
+        return replace(self, failed=tuple(sorted(others if holds else {*others, assumption})))
+
+    @property
+    def assumptions_in_use(self) -> tuple[str, ...]:
+        """The assumptions that its reactions rest on, or that were brought in with them and are watched; sorted."""
+        return tuple(sorted({a for names in self.rests_on.values() for a in names} | {*self.adopted}))
+
+    def resting_on(self, assumption: str) -> tuple[str, ...]:
+        """The situations that rest on an assumption, in the order in which they came."""
+        return tuple(s for s, assumptions in self.rests_on.items() if assumption in assumptions)
+
+
+def clauses_of(adaptation: Adaptation) -> dict[int, str]:
+    """The clauses that an adaptation adds, by label, each in canonical print."""
+    program = parse_program(adaptation.definitions)
+    return {s.head[0].value: show(s) for s in program.schemas if s.name == REACTION}  # type: ignore[union-attr, misc]

@@ -1,0 +1,239 @@
+"""The journal: what must survive a crash, append-only (docs/reactor.md, law 8).
+
+    record  =  A5 · length (4) · number (4) · CRC-32 of length, number and content (4) · content (MessagePack)
+
+Recovery reads the longest valid prefix and folds it. An adaptation counts from its `Decided(applied)` on, which is
+synced after the last drain has ended and before the first KILL: a crash before it leaves the old structure, a crash
+after it the new one. Now and then a snapshot takes the place of everything before it, so that recovery does not take
+longer as the reactor grows older.
+
+A write that fails leaves nobody knowing what is on the disk: from then on nothing is appended, and the next write
+begins the journal anew, as one snapshot. What could not be written meanwhile is counted as `gaps`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Literal, TypeAlias
+from zlib import crc32
+
+import msgspec
+from msgspec.structs import replace
+
+from planner_reactor.errors import DiskError, InputError
+from planner_reactor.link.messages import Adaptation
+from planner_reactor.reactor.committed import Committed
+from planner_reactor.reactor.disks import Disk
+
+HEADER = b"planner-reactor journal 1\n"
+MARK = 0xA5
+FRAME = 13
+"""Bytes before the content of a record."""
+
+LARGEST = 16_000_000
+"""Bytes of the largest record that is read."""
+
+RENEW_AFTER = 256
+"""Records after which a snapshot takes their place."""
+
+Outcome: TypeAlias = Literal["applied", "refused", "timed_out"]
+
+
+class Begun(msgspec.Struct, frozen=True, tag="begun"):
+    """An adaptation was admitted; nothing of it counts yet."""
+
+    adaptation: Adaptation
+    time: float
+
+
+class Decided(msgspec.Struct, frozen=True, tag="decided"):
+    """An adaptation is applied from here on, or came to nothing."""
+
+    id: int
+    outcome: Outcome
+    time: float
+
+
+class Assumed(msgspec.Struct, frozen=True, tag="assumed"):
+    """An assumption was found to fail, or to hold again."""
+
+    assumption: str
+    holds: bool
+    time: float
+
+
+class Halted(msgspec.Struct, frozen=True, tag="halted"):
+    """The stop button was pressed (law 15), or released by an explicit reset."""
+
+    halted: bool
+    time: float
+
+
+class State(msgspec.Struct, frozen=True):
+    """What a journal says: the structure, and the adaptations that were begun and not decided."""
+
+    committed: Committed = Committed()
+    open: tuple[Adaptation, ...] = ()
+
+
+class Snapshot(msgspec.Struct, frozen=True, tag="snapshot"):
+    """What all records before it come to."""
+
+    state: State
+    time: float
+
+
+Record: TypeAlias = Begun | Decided | Assumed | Halted | Snapshot
+
+_encode = msgspec.msgpack.Encoder().encode
+_decode = msgspec.msgpack.Decoder(Record).decode
+
+
+class Recovery(msgspec.Struct, frozen=True):
+    """What was found: `lost` bytes at the end are no valid record; `damaged` if valid ones stood behind them.
+
+    A torn end is what a crash leaves, and nothing that was acknowledged. Damage is not: something did not keep what it
+    had taken, and people must know.
+    """
+
+    state: State
+    lost: int = 0
+    damaged: bool = False
+
+
+class Journal:
+    """Writes records on one disk. `recover` comes first; `state` is what the records so far come to."""
+
+    def __init__(self, disk: Disk) -> None:
+        self._disk = disk
+        self.state = State()
+        self.records = 0  # since the last snapshot
+        self.gaps = 0
+        self.trusted = True  # is all that was written known to be there?
+
+    def recover(self) -> Recovery:
+        """Read what survived, and cut off what is no record; `InputError` if this is no journal."""
+        content = self._disk.read()
+        if HEADER.startswith(content):  # nothing yet, or torn at its very beginning
+            self._disk.replace(HEADER)
+            return Recovery(self.state, lost=len(content))
+        if not content.startswith(HEADER):
+            raise InputError(f"this is no journal: it begins with {content[: len(HEADER)]!r}, expected {HEADER!r}")
+        records, valid = read_records(content)
+        self.state, self.records = fold(records), len(records)
+        recovery = Recovery(self.state, len(content) - valid, damaged=_any_record(content, valid))
+        if recovery.lost:
+            if recovery.damaged:
+                self._disk.set_aside(content)
+            self._disk.replace(content[:valid])
+        return recovery
+
+    def write(self, *records: Record) -> None:
+        """Make these durable, all or none in effect; `DiskError` if that cannot be done, and then none counts."""
+        state, number = self.state, self.records
+        for record in records:
+            state = after(state, record)
+        try:
+            if self.trusted and number + len(records) <= RENEW_AFTER:
+                self._disk.append(b"".join(framed(r, number + n) for n, r in enumerate(records, 1)))
+                self._disk.sync()
+                number += len(records)
+            else:
+                self._disk.replace(HEADER + framed(Snapshot(state, records[-1].time), 1))
+                number = 1
+        except DiskError:
+            self.gaps += len(records)
+            self.trusted = False
+            raise
+        self.state, self.records, self.trusted = state, number, True
+
+    def note(self, record: Record) -> bool:
+        """Write what has happened anyway: if it cannot be made durable it counts all the same, and is a gap."""
+        try:
+            self.write(record)
+        except DiskError:
+            self.state = after(self.state, record)
+            return False
+        return True
+
+
+def framed(record: Record, number: int) -> bytes:
+    """A record as bytes; `number` counts the records of its file from 1."""
+    content = _encode(record)
+    head = len(content).to_bytes(4, "big") + number.to_bytes(4, "big")
+    return bytes([MARK]) + head + crc32(head + content).to_bytes(4, "big") + content
+
+
+def read_records(content: bytes) -> tuple[list[Record], int]:
+    """The records of the longest valid prefix, and how many bytes it has."""
+    records: list[Record] = []
+    place = len(HEADER)
+    for record, end in _records(content, place):
+        records.append(record)
+        place = end
+    return records, place
+
+
+def _records(content: bytes, place: int) -> Iterator[tuple[Record, int]]:
+    number = 1
+    while (frame := _frame(content, place)) is not None:
+        found, body = frame
+        if found != number:
+            return
+        try:
+            record = _decode(body)
+        except msgspec.MsgspecError:
+            return
+        place += FRAME + len(body)
+        number += 1
+        yield record, place
+
+
+def _frame(content: bytes, place: int) -> tuple[int, bytes] | None:
+    """(number, content) of the record at a place, if there is a whole and sound one."""
+    if place + FRAME > len(content) or content[place] != MARK:
+        return None
+    head = content[place + 1 : place + 9]
+    length = int.from_bytes(head[:4], "big")
+    body = content[place + FRAME : place + FRAME + length]
+    expected = int.from_bytes(content[place + 9 : place + FRAME], "big")
+    if length > LARGEST or len(body) < length or crc32(head + body) != expected:
+        return None
+    return int.from_bytes(head[4:], "big"), body
+
+
+def _any_record(content: bytes, place: int) -> bool:
+    """Is there a sound record anywhere from here on?"""
+    while (place := content.find(MARK, place)) >= 0:
+        if _frame(content, place) is not None:
+            return True
+        place += 1
+    return False
+
+
+def fold(records: list[Record]) -> State:
+    """What these records come to."""
+    state = State()
+    for record in records:
+        state = after(state, record)
+    return state
+
+
+def after(state: State, record: Record) -> State:
+    """What a state is after one more record."""
+    committed = state.committed
+    match record:
+        case Snapshot(snapshot):
+            return snapshot
+        case Begun(adaptation):
+            return State(committed.begun(adaptation), (*state.open, adaptation))
+        case Decided(number, outcome):
+            decided = committed.decided(number)
+            for adaptation in state.open:
+                if adaptation.id == number and outcome == "applied":
+                    decided = committed.after(adaptation)
+            return State(decided, tuple(a for a in state.open if a.id != number))
+        case Assumed(assumption, holds):
+            return replace(state, committed=committed.told(assumption, holds=holds))
+        case Halted(halted):
+            return replace(state, committed=replace(committed, halted=halted))
