@@ -13,7 +13,7 @@ from msgspec.structs import replace
 from planner_reactor.errors import BudgetError, PlannerReactorError
 from planner_reactor.rs.configurations import Config, Ending, Label, Oracle, World
 from planner_reactor.rs.evolves import started
-from planner_reactor.rs.leaves import elapsed, slack, steps
+from planner_reactor.rs.leaves import elapsed, offers, slack, steps, urgent
 from planner_reactor.rs.states import Bindings, Ended
 from planner_reactor.rs.terms import Process, Value
 
@@ -36,36 +36,34 @@ class Follower:
         config = Config()
         for process in processes:
             config = started(process, world, config=config)
-        self.configs: frozenset[Config] = frozenset({config})
+        self.configs: tuple[Config, ...] = (config,)
         self.steps = 0
 
     def saw(self, label: Label) -> None:
         """The run took a step with this label."""
         name, arguments, status, values = label
         world = replace(self._world, endings=_oracle(name, arguments, status == "ok", values))
-        after = {
-            step.after for config in self.configs for step in steps(config, world) if step.label == label
-        }
+        after = _different([o.taken(c, world) for c in self.configs for o in offers(c, world, seen=label)])
         if not after:
             offered = sorted({str(s.label) for c in self.configs for s in steps(c, self._world)})
             raise Disagreement(f"step {self.steps + 1}: saw {label}, allowed: {'; '.join(offered) or 'nothing'}")
         if len(after) > MOST:
             raise BudgetError("configurations", f"step {self.steps + 1}: the run may be in {len(after)} states")
-        self.configs = frozenset(after)
+        self.configs = after
         self.steps += 1
 
     def passed(self, seconds: float) -> None:
         """The run let this much time pass."""
         if seconds <= 0:
             return
-        patient = [c for c in self.configs if not any(s.urgent for s in steps(c, self._world))]
+        patient = [c for c in self.configs if not urgent(c, self._world)]
         if not patient:
-            urgent = sorted({str(s.label) for c in self.configs for s in steps(c, self._world) if s.urgent})
-            raise Disagreement(f"{seconds} s passed though something is urgent: {'; '.join(urgent)}")
+            wanted = sorted({str(s.label) for c in self.configs for s in steps(c, self._world) if s.urgent})
+            raise Disagreement(f"{seconds} s passed though something is urgent: {'; '.join(wanted)}")
         allowed = [c for c in patient if slack(c, self._world) >= seconds - TOLERANCE]
         if not allowed:
             raise Disagreement(f"{seconds} s passed, at most {max(slack(c, self._world) for c in patient)} allowed")
-        self.configs = frozenset(elapsed(c, min(seconds, slack(c, self._world)), self._world) for c in allowed)
+        self.configs = _different([elapsed(c, min(seconds, slack(c, self._world)), self._world) for c in allowed])
 
     def ended(self, root: int, *, ok: bool, results: Bindings) -> None:
         """The run says that this root (1, 2, …) has ended so."""
@@ -73,14 +71,18 @@ class Follower:
         if not fitting:
             allowed = [c.root(root) for c in self.configs]
             raise Disagreement(f"root {root} ended with {ok}, {results}; allowed: {allowed}")
-        self.configs = frozenset(fitting)
+        self.configs = tuple(fitting)
 
     def runs(self, root: int) -> None:
         """The run says that this root has not ended."""
         fitting = [c for c in self.configs if not isinstance(c.root(root), Ended)]
         if not fitting:
             raise Disagreement(f"root {root} runs; it should have ended: {[c.root(root) for c in self.configs]}")
-        self.configs = frozenset(fitting)
+        self.configs = tuple(fitting)
+
+
+def _different(configs: list[Config]) -> tuple[Config, ...]:
+    return tuple(dict.fromkeys(configs)) if len(configs) > 1 else tuple(configs)
 
 
 def _oracle(name: str, arguments: tuple[Value, ...], ok: bool, values: tuple[Value, ...]) -> Oracle:

@@ -38,6 +38,7 @@ from planner_reactor.rs.states import (
     Serve,
     Spawning,
     Testing,
+    Wait,
     Waiting,
     bind,
     leaf_of,
@@ -148,7 +149,7 @@ def _needed(process: Process, scope: Bindings) -> Bindings:
 
 def terminate(term: Run, store: Store, world: World, root: int) -> tuple[Run, Store]:
     """The term with every ending drawn that follows at once; an ended part of a `#` is left for `decide`."""
-    if term.at_rest:
+    if term.at_rest and not any(granted(wait, store) for wait in term.waits):
         return term, store
     if parts := parts_of(term):
         after = list(parts)
@@ -261,10 +262,23 @@ def _spawning(term: Spawning, store: Store, world: World) -> tuple[Run, Store]:
     return Spawning(again, term.loop, term.scope, (*bodies, Export((), new)), stopped), store
 
 
-def _granted(term: Await | Queued | Waiting, store: Store, root: int) -> tuple[Run, Store]:
-    match term:
+def granted(wait: Wait, store: Store) -> bool:
+    """Does the store end this ASSERT, WAIT, WAITINHIBIT or DRAIN now?"""
+    match wait:
         # an await returns once the instance, its bodies in service and its descendants have ended
-        case Await(k, results, again) if store.complete(k):
+        case Await(k):
+            return store.complete(k)
+        case Queued(ticket):
+            return any(q.ticket == ticket and q.fate is not None for q in store.queue)
+        case Waiting(_, situation):
+            return store.quiescent(situation)
+
+
+def _granted(term: Wait, store: Store, root: int) -> tuple[Run, Store]:
+    if not granted(term, store):
+        return term, store
+    match term:
+        case Await(k, results, again):
             instance = store.get(k)
             assert instance is not None
             store = store.without(k)
@@ -276,20 +290,17 @@ def _granted(term: Await | Queued | Waiting, store: Store, root: int) -> tuple[R
             return again, store
         case Queued(ticket, leaf):
             fate = next(q.fate for q in store.queue if q.ticket == ticket)
-            if fate is None:
-                return term, store
             store = store.left_queue(ticket)
             if isinstance(fate, str):
                 return Ended(False, cause=fate), store
+            assert fate is not None
             return Await(fate, leaf.results, leaf if leaf.name == "REASSERT" else None), store
-        case Waiting("WAIT", s) if store.quiescent(s):
-            return Ended(True), store
-        case Waiting("WAITINHIBIT", s) if store.quiescent(s):
+        case Waiting("WAITINHIBIT", s):
             return Ended(True), store.inhibit(s, root, "inhibit")
-        case Waiting("DRAIN", s) if store.quiescent(s):
+        case Waiting("DRAIN", s):
             return Ended(True), store.drain_ended(s, root).inhibit(s, root, "drain")
-        case _:
-            return term, store
+        case Waiting():
+            return Ended(True), store
 
 
 # ---------------------------------------------------------------------------------------- settling: N5 and N9

@@ -2,7 +2,8 @@
 
 Each built-in process has one function here, named after its rule; `steps` offers every step of a
 configuration and `elapsed` lets time pass (TIME: all sides together, and only when nothing is urgent). A step
-gives the label that an observer sees and the configuration afterwards, settled.
+gives the label that an observer sees and the configuration afterwards, settled; who needs only some of them asks for
+`offers` and takes those.
 """
 
 from __future__ import annotations
@@ -51,6 +52,7 @@ class Step(msgspec.Struct, frozen=True):
 
 Result: TypeAlias = tuple[str, tuple[Value, ...], Run, Store]
 Rule: TypeAlias = Callable[[Leaf, Spot, Store, World], Result | None]
+Meeting: TypeAlias = "Callable[[Spot, Leaf, list[Spot], Config], Iterator[Offer]]"
 
 TIE = 1e-8
 """Seconds within which two instants are one: ages are rounded to nine places."""
@@ -60,44 +62,62 @@ AB = "ab"
 WAITS = "wait"
 
 
+class Offer(msgspec.Struct, frozen=True):
+    """A step that could be taken: which leaves become what, and the store as they leave it."""
+
+    label: Label
+    changes: tuple[tuple[Spot, Run], ...]
+    store: Store
+    urgent: bool = True
+
+    def taken(self, config: Config, world: World) -> Config:
+        """The configuration after the step, settled."""
+        for spot, term in self.changes:
+            config = config.put(spot, term)
+        return settle(Config(config.roots, self.store), world)
+
+
 def steps(config: Config, world: World) -> Iterator[Step]:
     """PAR, SEQ: every step of every component, one single change each; COM pairs included."""
+    for offer in offers(config, world):
+        yield Step(offer.label, offer.taken(config, world), offer.urgent)
+
+
+def offers(config: Config, world: World, *, seen: Label | None = None) -> Iterator[Offer]:
+    """Every step, not yet taken; with `seen`, only those that show this label."""
     spots = list(config.spots())
     for spot in spots:
-        if not isinstance(spot.leaf, Leaf):
+        leaf = spot.leaf
+        if not isinstance(leaf, Leaf) or leaf.name in PASSIVE:
             continue
-        if spot.leaf.problem:
-            yield _settled((spot.leaf.name, (), AB, ()), config.put(spot, Ended(False, cause="error")), world)
-        elif spot.leaf.name == "OUT":
-            yield from _communicated(spot, spots, config, world)
-        elif spot.leaf.name == "KILL":
-            yield from _killed(spot, spots, config, world)
-        elif spot.leaf.name == "POST":
-            yield from _posted(spot, spots, config, world)
-        elif (rule := RULES.get(spot.leaf.name)) is not None:
-            if (result := rule(spot.leaf, spot, config.store, world)) is not None:
-                status, values, term, store = result
-                after = replace(config.put(spot, term), store=store)
-                yield _settled((spot.leaf.name, spot.leaf.arguments, status, values), after, world)
-        elif spot.leaf.name not in PASSIVE:
-            yield from _ended(spot, spot.leaf, config, world)
+        if seen is None:
+            yield from _offered(spot, leaf, spots, config, world)
+        elif leaf.name == (seen[0] if seen[0] != "COM" else "OUT") and leaf.arguments == seen[1]:
+            yield from (o for o in _offered(spot, leaf, spots, config, world) if o.label == seen)
 
 
-def _settled(label: Label, after: Config, world: World, *, urgent: bool = True) -> Step:
-    return Step(label, settle(after, world), urgent)
+def _offered(spot: Spot, leaf: Leaf, spots: list[Spot], config: Config, world: World) -> Iterator[Offer]:
+    store = config.store
+    if leaf.problem:
+        yield Offer((leaf.name, (), AB, ()), ((spot, Ended(False, cause="error")),), store)
+    elif (meeting := MEETINGS.get(leaf.name)) is not None:
+        yield from meeting(spot, leaf, spots, config)
+    elif (rule := RULES.get(leaf.name)) is None:
+        yield from _ended(spot, leaf, store, world)
+    elif (result := rule(leaf, spot, store, world)) is not None:
+        status, values, term, store = result
+        yield Offer((leaf.name, leaf.arguments, status, values), ((spot, term),), store)
 
 
 # ------------------------------------------------------------------------------------------------------- ports
 
 
-def _communicated(writer: Spot, spots: list[Spot], config: Config, world: World) -> Iterator[Step]:
+def _communicated(writer: Spot, leaf: Leaf, spots: list[Spot], config: Config) -> Iterator[Offer]:
     """COM. `p!v` meets `p?v`: one reader per write; any ready pair may meet."""
-    assert isinstance(writer.leaf, Leaf)
-    port, value = writer.leaf.arguments
-    for reader in _named(spots, "IN", (port,)):
-        assert isinstance(reader.leaf, Leaf)
-        after = config.put(writer, Ended(True)).put(reader, Ended(True, _results(reader.leaf, (value,))))
-        yield _settled(("COM", (port, value), OK, ()), after, world)
+    port, value = leaf.arguments
+    for reader, wanted in _named(spots, "IN", (port,)):
+        changes = ((writer, Ended(True)), (reader, Ended(True, _results(wanted, (value,)))))
+        yield Offer(("COM", (port, value), OK, ()), changes, config.store)
 
 
 # ----------------------------------------------------------------------------------- basic processes and time
@@ -106,14 +126,14 @@ def _communicated(writer: Spot, spots: list[Spot], config: Config, world: World)
 def window(leaf: Leaf, world: World) -> tuple[float, float]:
     """The ages, in seconds, at which this process may end; (inf, inf) if only another process can end it."""
     match leaf.name:
+        case name if name in RULES or name in PASSIVE or name in MEETINGS:
+            return inf, inf
         case "Delay":
             return _seconds(leaf), _seconds(leaf)
         case "SUSPEND":
             return _seconds(leaf) / 1000, _seconds(leaf) / 1000
         case "Term":
             return 0.0, _seconds(leaf)
-        case name if name in RULES or name in PASSIVE or name in ("OUT", "KILL", "POST"):
-            return inf, inf
     signature = world.signatures.get(leaf.name)
     return signature.window if signature is not None and signature.window is not None else (0.0, 0.0)
 
@@ -123,7 +143,7 @@ def _seconds(leaf: Leaf) -> float:
     return max(0.0, float(value)) if is_number(value) else 0.0  # type: ignore[arg-type]
 
 
-def _ended(spot: Spot, leaf: Leaf, config: Config, world: World) -> Iterator[Step]:
+def _ended(spot: Spot, leaf: Leaf, store: Store, world: World) -> Iterator[Offer]:
     """`tau:ΩB`, `tau:℧B` inside the window; urgent only at its end."""
     low, high = window(leaf, world)
     if not low - TIE <= leaf.age <= high + TIE:
@@ -131,7 +151,7 @@ def _ended(spot: Spot, leaf: Leaf, config: Config, world: World) -> Iterator[Ste
     for ok, values in _endings(leaf, world):
         term = Ended(ok, _results(leaf, values), "" if ok else "failed")
         label = (leaf.name, leaf.arguments, OK if ok else AB, values)
-        yield _settled(label, config.put(spot, term), world, urgent=leaf.age >= high - TIE)
+        yield Offer(label, ((spot, term),), store, leaf.age >= high - TIE)
 
 
 def _endings(leaf: Leaf, world: World) -> Iterator[tuple[bool, tuple[Value, ...]]]:
@@ -150,10 +170,15 @@ def _results(leaf: Leaf, values: tuple[Value, ...]) -> Bindings:
 def slack(config: Config, world: World) -> float:
     """The longest time that may pass before an age window closes: inf if nothing will end by itself.
 
-    None may pass while a step is urgent (maximal progress): ask `steps`.
+    None may pass while a step is urgent (maximal progress): ask `urgent`.
     """
     leaves = (spot.leaf for spot in config.spots())
     return min((window(i, world)[1] - i.age for i in leaves if isinstance(i, Leaf)), default=inf)
+
+
+def urgent(config: Config, world: World) -> bool:
+    """Is there a step that does not let time pass?"""
+    return any(offer.urgent for offer in offers(config, world))
 
 
 def elapsed(config: Config, seconds: float, world: World) -> Config:
@@ -166,9 +191,11 @@ def _older(term: Run, seconds: float, world: World) -> Run:
         low, high = window(term, world)
         age = round(term.age + seconds, 9)
         # past its beginning, an endless window is the same at every age
-        return replace(term, age=age if high < inf else min(age, low) if low < inf else 0.0)
+        age = age if high < inf else min(age, low) if low < inf else 0.0
+        return term if age == term.age else replace(term, age=age)
     parts = parts_of(term)
-    return with_parts(term, tuple(_older(p, seconds, world) for p in parts)) if parts else term
+    older = tuple(_older(p, seconds, world) for p in parts)
+    return term if all(new is old for new, old in zip(older, parts, strict=True)) else with_parts(term, older)
 
 
 # -------------------------------------------------------------------------------------------------- situations
@@ -273,40 +300,36 @@ def report(leaf: Leaf, spot: Spot, store: Store, world: World) -> Result | None:
 # ------------------------------------------------------------------------------------------------------ guards
 
 
-def _posted(poster: Spot, spots: list[Spot], config: Config, world: World) -> Iterator[Step]:
+def _posted(poster: Spot, leaf: Leaf, spots: list[Spot], config: Config) -> Iterator[Offer]:
     """`POST[n]` meets `ADD<m>`: m becomes n. A label in use is refused."""
-    assert isinstance(poster.leaf, Leaf)
-    label = poster.leaf.arguments[0]
+    (label,) = leaf.arguments
     if _named(spots, "E", (label,)):
-        yield _settled(("POST", (label,), AB, ()), config.put(poster, Ended(False, cause="error")), world)
+        yield Offer(("POST", (label,), AB, ()), ((poster, Ended(False, cause="error")),), config.store)
         return
-    for adder in _named(spots, "ADD", ()):
-        assert isinstance(adder.leaf, Leaf)
-        after = config.put(poster, Ended(True)).put(adder, Ended(True, _results(adder.leaf, (label,))))
-        yield _settled(("POST", (label,), OK, ()), after, world)
+    for adder, wanted in _named(spots, "ADD", ()):
+        changes = ((poster, Ended(True)), (adder, Ended(True, _results(wanted, (label,)))))
+        yield Offer(("POST", (label,), OK, ()), changes, config.store)
 
 
-def _named(spots: list[Spot], name: str, arguments: tuple[Value, ...]) -> list[Spot]:
+def _named(spots: list[Spot], name: str, arguments: tuple[Value, ...]) -> list[tuple[Spot, Leaf]]:
     return [
-        s for s in spots
+        (s, s.leaf) for s in spots
         if isinstance(s.leaf, Leaf) and s.leaf.name == name and not s.leaf.problem and s.leaf.arguments == arguments
     ]  # fmt: skip
 
 
-def _killed(killer: Spot, spots: list[Spot], config: Config, world: World) -> Iterator[Step]:
+def _killed(killer: Spot, leaf: Leaf, spots: list[Spot], config: Config) -> Iterator[Offer]:
     """`KILL[n]` meets `E[n]`, when no body of n's reaction is in service; an absent guard is an error."""
-    assert isinstance(killer.leaf, Leaf)
-    label = killer.leaf.arguments[0]
+    (label,) = leaf.arguments
     found = _named(spots, "E", (label,))
     if not found:
-        yield _settled(("KILL", (label,), AB, ()), config.put(killer, Ended(False, cause="error")), world)
-    for guard in found:
+        yield Offer(("KILL", (label,), AB, ()), ((killer, Ended(False, cause="error")),), config.store)
+    for guard, _ in found:
         group = config.root(guard.root)
         for index in guard.path[:-1]:
             group = parts_of(group)[index]
         if all(resting(p) for i, p in enumerate(parts_of(group)) if i != guard.path[-1]):
-            after = config.put(killer, Ended(True)).put(guard, Ended(True))
-            yield _settled(("KILL", (label,), OK, ()), after, world)
+            yield Offer(("KILL", (label,), OK, ()), ((killer, Ended(True)), (guard, Ended(True))), config.store)
 
 
 def resting(term: Run, *, sensing: bool | None = None) -> bool:
@@ -353,6 +376,8 @@ RULES: dict[str, Rule] = {
     "STUB": stub,
     "REPORT": report,
 }
+
+MEETINGS: dict[str, Meeting] = {"OUT": _communicated, "POST": _posted, "KILL": _killed}
 
 PASSIVE = frozenset({"NIL", "IN", "E", "ADD", "ASSUMONITOR", "HOLDMONITOR"})
 """Leaves that have no step of their own."""

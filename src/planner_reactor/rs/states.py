@@ -20,10 +20,10 @@ names that it uses, so that equal states are equal values.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
-from functools import cached_property, lru_cache
-from typing import ClassVar, Literal, TypeAlias
+from functools import lru_cache
+from typing import Any, ClassVar, Generic, Literal, TypeAlias, TypeVar
 
 import msgspec
 from msgspec.structs import replace
@@ -48,6 +48,21 @@ Bindings: TypeAlias = tuple[tuple[str, Value], ...]
 """Names and values, sorted by name."""
 
 
+T = TypeVar("T")
+
+
+class _Once(Generic[T]):
+    """A property that is worked out when first asked for (`functools.cached_property` takes a lock each time)."""
+
+    def __init__(self, work_out: Callable[[Any], T]) -> None:
+        self._work_out = work_out
+        self._name = work_out.__name__
+
+    def __get__(self, term: Any, kind: type | None = None) -> T:
+        value = term.__dict__[self._name] = self._work_out(term)
+        return value
+
+
 class InstanceNumber(int):
     """The number k of a situation instance: an integer that an explorer may rename consistently."""
 
@@ -64,6 +79,7 @@ class Ended:
     """`ok.r` or `ab.r`. The cause is for traces and perceptions; the algebra sees only the outcome."""
 
     at_rest: ClassVar[bool] = False
+    waits: ClassVar[tuple[Wait, ...]] = ()
 
     ok: bool
     bindings: Bindings = ()
@@ -74,6 +90,7 @@ class Delivered(msgspec.Struct, frozen=True):
     """A SIT that has just delivered an instance: what follows it, if anything, is the instance's body."""
 
     at_rest: ClassVar[bool] = False
+    waits: ClassVar[tuple[Wait, ...]] = ()
 
     situation: str
     instance: InstanceNumber
@@ -89,6 +106,7 @@ class Leaf(msgspec.Struct, frozen=True):
     """
 
     at_rest: ClassVar[bool] = True
+    waits: ClassVar[tuple[Wait, ...]] = ()
 
     name: str
     arguments: tuple[Value, ...] = ()
@@ -99,29 +117,33 @@ class Leaf(msgspec.Struct, frozen=True):
     problem: str = ""
 
 
-class Await(msgspec.Struct, frozen=True):
-    """`await_{s,k}<x>`; `again` holds the leaf of a REASSERT, to be repeated should the instance fail."""
+class _Wait(msgspec.Struct, frozen=True):
+    """What the store ends: by itself it is at rest."""
 
-    at_rest: ClassVar[bool] = False
+    at_rest: ClassVar[bool] = True
+
+    @property
+    def waits(self) -> tuple[Wait, ...]:
+        return (self,)  # type: ignore[return-value]  # every one that stands below is a Wait
+
+
+class Await(_Wait, frozen=True):
+    """`await_{s,k}<x>`; `again` holds the leaf of a REASSERT, to be repeated should the instance fail."""
 
     instance: InstanceNumber
     results: tuple[str, ...]
     again: Leaf | None = None
 
 
-class Queued(msgspec.Struct, frozen=True):
+class Queued(_Wait, frozen=True):
     """An ASSERT held back: `ticket` finds it in the store's queue."""
-
-    at_rest: ClassVar[bool] = False
 
     ticket: InstanceNumber
     leaf: Leaf
 
 
-class Waiting(msgspec.Struct, frozen=True):
+class Waiting(_Wait, frozen=True):
     """A WAIT, WAITINHIBIT or DRAIN that has begun."""
-
-    at_rest: ClassVar[bool] = False
 
     name: str
     situation: str
@@ -130,10 +152,15 @@ class Waiting(msgspec.Struct, frozen=True):
 class _Composed(msgspec.Struct, frozen=True, dict=True, cache_hash=True):
     """A term with live parts."""
 
-    @cached_property
+    @_Once
     def at_rest(self) -> bool:
-        """Can nothing in it end within the present step, whatever the store? Then settling passes it by."""
+        """Can nothing in it end within the present step, but for what the store ends? Then settling passes it by."""
         return all(part.at_rest for part in parts_of(self))  # type: ignore[arg-type]  # each that stands below is a Run
+
+    @_Once
+    def waits(self) -> tuple[Wait, ...]:
+        """What the store may end in it."""
+        return tuple(w for part in parts_of(self) for w in part.waits)  # type: ignore[arg-type]
 
 
 class Chain(_Composed, frozen=True):
@@ -147,7 +174,7 @@ class Keep(_Composed, frozen=True):
     bindings: Bindings
     body: Run
 
-    @cached_property
+    @_Once
     def at_rest(self) -> bool:
         return bool(self.bindings) and not isinstance(self.body, Keep) and self.body.at_rest
 
@@ -158,7 +185,7 @@ class Export(_Composed, frozen=True):
     renamed: tuple[tuple[str, str], ...]
     body: Run
 
-    @cached_property
+    @_Once
     def at_rest(self) -> bool:
         return bool(self.renamed or not isinstance(self.body, Export | Keep)) and self.body.at_rest
 
@@ -166,6 +193,12 @@ class Export(_Composed, frozen=True):
 class Group(_Composed, frozen=True):
     operator: Literal["|", "&", "#"]
     parts: tuple[Run, ...]
+
+    @_Once
+    def at_rest(self) -> bool:
+        live = [part for part in self.parts if not isinstance(part, Ended)]
+        enough = len(self.parts) if self.operator == "#" else 1  # with fewer live parts it is decided, or over
+        return len(live) >= enough and all(part.at_rest for part in live)
 
 
 class Inverted(_Composed, frozen=True):
@@ -204,6 +237,11 @@ class Spawning(_Composed, frozen=True):
     bodies: tuple[Run, ...] = ()
     stopped: bool = False
 
+    @_Once
+    def at_rest(self) -> bool:
+        waits = self.condition.at_rest or (self.bodies and isinstance(self.condition, Ended) and not self.condition.ok)
+        return bool(waits) and all(body.at_rest for body in self.bodies)
+
 
 class Serve(_Composed, frozen=True):
     situation: str
@@ -216,6 +254,8 @@ Run: TypeAlias = (
     Ended | Delivered | Leaf | Await | Queued | Waiting | Chain | Keep | Export | Group | Inverted | Deciding
     | Testing | Round | Spawning | Serve
 )  # fmt: skip
+
+Wait: TypeAlias = Await | Queued | Waiting
 
 Path: TypeAlias = tuple[int, ...]
 
@@ -230,38 +270,36 @@ class Spot(msgspec.Struct, frozen=True):
     owner: InstanceNumber | None = None
 
 
+_LIVE: dict[type, str] = {
+    Chain: "current",
+    Keep: "body",
+    Export: "body",
+    Inverted: "body",
+    Deciding: "test",
+    Testing: "condition",
+    Round: "body",
+    Serve: "body",
+}
+"""In which field a term keeps its one live component."""
+
+
 def parts_of(term: Run) -> tuple[Run, ...]:
     """The live components of a run-time term, left to right."""
-    match term:
-        case Ended() | Delivered() | Leaf() | Await() | Queued() | Waiting():
-            return ()
-        case Group(_, parts):
-            return parts
-        case Spawning(condition, _, _, bodies):
-            return (condition, *bodies)
-        case Chain(_, current) | Testing(current) | Deciding(current):
-            return (current,)
-        case Keep(_, body) | Export(_, body) | Inverted(body) | Round(body) | Serve(body=body):
-            return (body,)
+    if (field := _LIVE.get(term.__class__)) is not None:
+        return (getattr(term, field),)
+    if isinstance(term, Group):
+        return term.parts
+    return (term.condition, *term.bodies) if isinstance(term, Spawning) else ()
 
 
 def with_parts(term: Run, parts: tuple[Run, ...]) -> Run:
     """The same term with other live components."""
-    match term:
-        case Group(operator):
-            return Group(operator, parts)
-        case Spawning():
-            return replace(term, condition=parts[0], bodies=parts[1:])
-        case Chain():
-            return replace(term, current=parts[0])
-        case Testing():
-            return replace(term, condition=parts[0])
-        case Deciding():
-            return replace(term, test=parts[0])
-        case Keep() | Export() | Inverted() | Round() | Serve():
-            return replace(term, body=parts[0])
-        case _:
-            return term
+    if (field := _LIVE.get(term.__class__)) is not None:
+        changed: Run = replace(term, **{field: parts[0]})  # type: ignore[type-var]
+        return changed
+    if isinstance(term, Group):
+        return Group(term.operator, parts)
+    return replace(term, condition=parts[0], bodies=parts[1:]) if isinstance(term, Spawning) else term
 
 
 def put(term: Run, path: Path, new: Run) -> Run:
@@ -290,17 +328,17 @@ def spots(
     owner: InstanceNumber | None = None,
 ) -> Iterator[Spot]:
     """Every live leaf, left to right, with the guard and the instance that enclose it."""
-    match term:
-        case Leaf() | Await() | Queued() | Waiting():
-            yield Spot(root, path, term, guard, owner)
-        case Ended() | Delivered():
-            return
-        case _:
+    waiting = [(term, path, guard, owner)]
+    while waiting:
+        term, path, guard, owner = waiting.pop()
+        if isinstance(term, _Composed):
             label = guard_of(term)
             guard = guard if label is None else label
             owner = term.instance if isinstance(term, Serve) else owner
-            for index, part in enumerate(parts_of(term)):
-                yield from spots(part, root, (*path, index), guard, owner)
+            parts = parts_of(term)
+            waiting += [(parts[i], (*path, i), guard, owner) for i in range(len(parts) - 1, -1, -1)]
+        elif not isinstance(term, Ended | Delivered):
+            yield Spot(root, path, term, guard, owner)
 
 
 # ----------------------------------------------------------------------------------------------- bindings

@@ -252,12 +252,10 @@ class Store(msgspec.Struct, frozen=True):
     def _once_settled(self) -> Store:
         store = self
         for i in self.instances:
-            if i.status == "on" and not self.in_service(i.number):
-                if i.withdrawn:
-                    store = store.ended(i.number, ok=False, cause="withdrawn")
-                elif self.disabled(i.situation):
-                    store = store.ended(i.number, ok=False, cause="assumption")
-            elif i.status != "on":
+            if i.status == "on":
+                if (i.withdrawn or self.disabled(i.situation)) and not self.in_service(i.number):
+                    store = store.ended(i.number, ok=False, cause="withdrawn" if i.withdrawn else "assumption")
+            else:
                 for child in self.instances:
                     if child.owner == i.number and child.status == "on":
                         store = store.ended(child.number, ok=False, cause="cancelled")
