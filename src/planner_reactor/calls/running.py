@@ -13,21 +13,13 @@ from typing import Any
 
 from planner_reactor.calls.hosts import HostSource, find_host
 from planner_reactor.calls.inputs import one_of, read_text, seconds, whole
-from planner_reactor.errors import RSError, SourceError
+from planner_reactor.calls.processes import called, checked, value
 from planner_reactor.reactor.built_ins import BuiltIns
-from planner_reactor.rs.checks import check
 from planner_reactor.rs.configurations import spawned_situations
-from planner_reactor.rs.expressions import EvaluationError, evaluate
-from planner_reactor.rs.parser import parse_process, read_program
-from planner_reactor.rs.printer import show
-from planner_reactor.rs.source import Source
-from planner_reactor.rs.terms import Call, Expression, Program, Schema, Value
+from planner_reactor.rs.terms import Call, Program, Value
 from planner_reactor.runtime import Clock, Executer, Host, Root, Scheduler, VirtualClock, WallClock
 from planner_reactor.runtime.scheduler import END_OF_TIME
 from planner_reactor.trace import Event, Trace
-
-ROOT = "<process>"
-"""The file that the process to be run is said to stand in."""
 
 
 def run(
@@ -50,7 +42,7 @@ def run(
     seed, until = whole("seed", seed, 0), seconds("until", until)
     one_of("clock", clock, ("virtual", "wall"))
     text, maker = read_text(file), find_host(host) if host is not None else None
-    call = _called(process)
+    call = called(process)
     time: Clock = VirtualClock() if clock == "virtual" else WallClock() if maker else _LonelyClock()
     scheduler = Scheduler(time, seed=seed)
     trace = Trace(lambda: scheduler.now, keep=False)
@@ -60,9 +52,9 @@ def run(
 
     trace.sinks.append(tell)
     used = maker(scheduler, trace=trace) if maker else Host("none")
-    program = _checked(text, str(file), process, call, used)
+    program = checked(text, str(file), process, call, used)
     executer, start = _executer(program, used, scheduler, trace)
-    arguments = [_value(argument, process, call, used) for argument in call.arguments]
+    arguments = [value(argument, process, call, used) for argument in call.arguments]
     if isinstance(time, _LonelyClock):
         time.stop = scheduler.stop
     root = start(call, arguments)
@@ -84,40 +76,6 @@ class _LonelyClock(WallClock):
             self.stop()
         else:
             super().reach(when)
-
-
-def _called(process: str) -> Call:
-    """The process as a call; RSError if it is anything else."""
-    term = parse_process(process, file=ROOT)
-    if isinstance(term, Call):
-        return term
-    source = Source(process, ROOT)
-    raise RSError([source.finding(0, "error", "no-call", "this is a composition", "expected NAME[arguments]")])
-
-
-def _checked(text: str, file: str, process: str, call: Call, host: Host) -> Program:
-    """The program, if it and the call hold against the static checks as a whole."""
-    program, found = read_program(text, file=file)
-    errors = [f for f in found if f.severity == "error"]
-    if not errors:
-        root = Schema(ROOT, (), (), call, call.place)
-        static = check(program.with_schemas([root]), signatures=host.signatures, functions=host.functions, roots=[ROOT])
-        errors = [f for f in static if f.severity == "error"]
-        errors = list(Source(process, ROOT).shown(Source(text, file).shown(errors)))
-    if errors:
-        raise RSError(sorted(errors, key=lambda f: f.place.file != ROOT))
-    return program
-
-
-def _value(argument: Expression, process: str, call: Call, host: Host) -> Value:
-    try:
-        return evaluate(argument, {}, host.functions)
-    except EvaluationError as error:
-        place = getattr(argument, "place", None) or call.place
-        source = Source(process, ROOT)
-        offset = place.column - 1 if place is not None else 0
-        finding = source.finding(offset, "error", "no-value", f"{show(argument)} has no value: {error}")
-        raise SourceError([finding]) from error
 
 
 def _executer(
