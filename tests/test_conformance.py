@@ -149,7 +149,7 @@ def conforms(processes: list[Process], seed: int) -> int:
     def observe(label: tuple[str, tuple[object, ...], str, tuple[object, ...]]) -> None:
         follower.passed(round(scheduler.now - seen[0], 9))
         seen[0] = scheduler.now
-        follower.saw(label)
+        follower.saw(label, executer.sites)
         if follower.steps >= MOST_STEPS:
             raise Enough
 

@@ -6,14 +6,14 @@ that an observer of a run sees, and the time that passes; where nothing fits, th
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Hashable, Iterable
 
 from msgspec.structs import replace
 
 from planner_reactor.errors import BudgetError, PlannerReactorError
 from planner_reactor.rs.configurations import Config, Ending, Label, Oracle, World
 from planner_reactor.rs.evolves import started
-from planner_reactor.rs.leaves import elapsed, offers, slack, steps, urgent
+from planner_reactor.rs.leaves import Offer, elapsed, offers, slack, steps, urgent
 from planner_reactor.rs.states import Bindings, Ended
 from planner_reactor.rs.terms import Process, Value
 
@@ -39,11 +39,12 @@ class Follower:
         self.configs: tuple[Config, ...] = (config,)
         self.steps = 0
 
-    def saw(self, label: Label) -> None:
-        """The run took a step with this label."""
+    def saw(self, label: Label, sites: tuple[Hashable, ...] = ()) -> None:
+        """The run took a step with this label, by leaves that stand at `sites` in the text, if that is known."""
         name, arguments, status, values = label
         world = replace(self._world, endings=_oracle(name, arguments, status == "ok", values))
-        after = _different([o.taken(c, world) for c in self.configs for o in offers(c, world, seen=label)])
+        found = ((c, o) for c in self.configs for o in offers(c, world, seen=label))
+        after = _different([o.taken(c, world) for c, o in found if _stand_at(o, sites)])
         if not after:
             offered = sorted({str(s.label) for c in self.configs for s in steps(c, self._world)})
             raise Disagreement(f"step {self.steps + 1}: saw {label}, allowed: {'; '.join(offered) or 'nothing'}")
@@ -79,6 +80,11 @@ class Follower:
         if not fitting:
             raise Disagreement(f"root {root} runs; it should have ended: {[c.root(root) for c in self.configs]}")
         self.configs = tuple(fitting)
+
+
+def _stand_at(offer: Offer, sites: tuple[Hashable, ...]) -> bool:
+    """Do the leaves of this step stand where those of the run do? What was not written down stands nowhere."""
+    return all(own is None or own == seen for own, seen in zip(offer.sites, sites, strict=False))
 
 
 def _different(configs: list[Config]) -> tuple[Config, ...]:

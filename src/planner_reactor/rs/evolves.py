@@ -149,7 +149,7 @@ def _needed(process: Process, scope: Bindings) -> Bindings:
 
 def terminate(term: Run, store: Store, world: World, root: int) -> tuple[Run, Store]:
     """The term with every ending drawn that follows at once; an ended part of a `#` is left for `decide`."""
-    if term.at_rest and not any(granted(wait, store) for wait in term.waits):
+    if term.at_rest and not (term.waits and any(granted(wait, store) for wait in term.waits)):
         return term, store
     if parts := parts_of(term):
         after = list(parts)

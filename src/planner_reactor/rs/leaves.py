@@ -15,6 +15,7 @@ from typing import TypeAlias
 import msgspec
 from msgspec.structs import replace
 
+from planner_reactor.errors import Place
 from planner_reactor.rs.comparisons import TESTS
 from planner_reactor.rs.configurations import Config, Label, World
 from planner_reactor.rs.evolves import settle
@@ -69,6 +70,11 @@ class Offer(msgspec.Struct, frozen=True):
     changes: tuple[tuple[Spot, Run], ...]
     store: Store
     urgent: bool = True
+
+    @property
+    def sites(self) -> tuple[Place | None, ...]:
+        """Where in the text the leaves stand that take it, a writer before its reader."""
+        return tuple(spot.leaf.site for spot, _ in self.changes if isinstance(spot.leaf, Leaf))
 
     def taken(self, config: Config, world: World) -> Config:
         """The configuration after the step, settled."""

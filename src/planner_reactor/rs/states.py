@@ -67,7 +67,7 @@ class InstanceNumber(int):
     """The number k of a situation instance: an integer that an explorer may rename consistently."""
 
 
-class Reaction(msgspec.Struct, frozen=True):
+class Reaction(msgspec.Struct, frozen=True, cache_hash=True):
     """The identity g of a reaction: the label of its guard, if any, and where its SIT stands in the text."""
 
     guard: Value | None
@@ -98,7 +98,7 @@ class Delivered(msgspec.Struct, frozen=True):
     bindings: Bindings
 
 
-class Leaf(msgspec.Struct, frozen=True):
+class Leaf(msgspec.Struct, frozen=True, cache_hash=True):
     """A basic or built-in process that has come to life.
 
     `age` in seconds; `opens` marks a SIT whose instance is served by what follows it; `problem` says why its
@@ -331,14 +331,15 @@ def spots(
     waiting = [(term, path, guard, owner)]
     while waiting:
         term, path, guard, owner = waiting.pop()
-        if isinstance(term, _Composed):
-            label = guard_of(term)
-            guard = guard if label is None else label
-            owner = term.instance if isinstance(term, Serve) else owner
-            parts = parts_of(term)
-            waiting += [(parts[i], (*path, i), guard, owner) for i in range(len(parts) - 1, -1, -1)]
-        elif not isinstance(term, Ended | Delivered):
+        if isinstance(term, Leaf | Await | Queued | Waiting):
             yield Spot(root, path, term, guard, owner)
+            continue
+        if isinstance(term, Group) and (label := guard_of(term)) is not None:
+            guard = label
+        elif isinstance(term, Serve):
+            owner = term.instance
+        parts = parts_of(term)
+        waiting += [(parts[i], (*path, i), guard, owner) for i in range(len(parts) - 1, -1, -1)]
 
 
 # ----------------------------------------------------------------------------------------------- bindings

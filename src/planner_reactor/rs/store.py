@@ -24,7 +24,7 @@ Owner: TypeAlias = int | tuple[str, str]
 Kind: TypeAlias = Literal["inhibit", "drain", "assumption"]
 
 
-class Instance(msgspec.Struct, frozen=True):
+class Instance(msgspec.Struct, frozen=True, cache_hash=True):
     """(s, k, args, status, values, owner): one assertion of a situation."""
 
     number: InstanceNumber
@@ -39,7 +39,7 @@ class Instance(msgspec.Struct, frozen=True):
     cause: str = ""
 
 
-class Inhibition(msgspec.Struct, frozen=True):
+class Inhibition(msgspec.Struct, frozen=True, cache_hash=True):
     """Nothing of the situation is served; `drain` and `assumption` also hold its ASSERTs back."""
 
     situation: str
@@ -47,7 +47,7 @@ class Inhibition(msgspec.Struct, frozen=True):
     kind: Kind
 
 
-class QueuedAssert(msgspec.Struct, frozen=True):
+class QueuedAssert(msgspec.Struct, frozen=True, cache_hash=True):
     """An ASSERT held back; `fate` is set once it is released (its instance) or has failed (the cause)."""
 
     ticket: InstanceNumber
@@ -57,7 +57,7 @@ class QueuedAssert(msgspec.Struct, frozen=True):
     fate: InstanceNumber | str | None = None
 
 
-class Store(msgspec.Struct, frozen=True):
+class Store(msgspec.Struct, frozen=True, cache_hash=True):
     instances: tuple[Instance, ...] = ()  # I, oldest first
     inhibitions: tuple[Inhibition, ...] = ()  # H
     drains: tuple[tuple[str, int], ...] = ()  # D: situation, root
@@ -244,6 +244,8 @@ class Store(msgspec.Struct, frozen=True):
 
     def settled(self) -> Store:
         """The consequences that belong to the same step, to the end."""
+        if not self.instances and not self.queue:
+            return self
         store = self
         while (after := store._once_settled()) is not store:
             store = after

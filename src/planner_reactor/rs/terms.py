@@ -89,57 +89,57 @@ class Call:
     place: Place | None = field(default=None, compare=False, repr=False)
 
 
-class Seq(msgspec.Struct, frozen=True):
+class Seq(msgspec.Struct, frozen=True, cache_hash=True):
     """`P;Q`: Q follows P, however P ended."""
 
     parts: tuple[Process, ...]
 
 
-class Cond(msgspec.Struct, frozen=True):
+class Cond(msgspec.Struct, frozen=True, cache_hash=True):
     """`P:Q`: Q follows P if P stopped."""
 
     parts: tuple[Process, ...]
 
 
-class Par(msgspec.Struct, frozen=True):
+class Par(msgspec.Struct, frozen=True, cache_hash=True):
     """`P|Q`: side by side; stops if at least one part stops."""
 
     parts: tuple[Process, ...]
 
 
-class All(msgspec.Struct, frozen=True):
+class All(msgspec.Struct, frozen=True, cache_hash=True):
     """`P&Q`: side by side; stops only if every part stops."""
 
     parts: tuple[Process, ...]
 
 
-class Disable(msgspec.Struct, frozen=True):
+class Disable(msgspec.Struct, frozen=True, cache_hash=True):
     """`P#Q`: side by side; the first part to end decides and the others are aborted."""
 
     parts: tuple[Process, ...]
 
 
-class Not(msgspec.Struct, frozen=True):
+class Not(msgspec.Struct, frozen=True, cache_hash=True):
     """`~P`: stop and abort swapped."""
 
     body: Process
 
 
-class Loop(msgspec.Struct, frozen=True):
+class Loop(msgspec.Struct, frozen=True, cache_hash=True):
     """`A:;B`, synchronous recurrent: while A stops, do B."""
 
     condition: Process
     body: Process
 
 
-class Spawn(msgspec.Struct, frozen=True):
+class Spawn(msgspec.Struct, frozen=True, cache_hash=True):
     """`A::B`, asynchronous recurrent: whenever A stops, spawn a B and go on."""
 
     condition: Process
     body: Process
 
 
-class If(msgspec.Struct, frozen=True):
+class If(msgspec.Struct, frozen=True, cache_hash=True):
     """`if C then P else Q`: C decides once."""
 
     test: Process

@@ -7,7 +7,7 @@ scheduler alone; between events nothing runs. The reactor extends it by `Control
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Hashable, Iterable, Mapping
 
 import msgspec
 
@@ -135,6 +135,11 @@ class Executer:
     def processes_live(self) -> int:
         """Strands alive: one figure of the statistics, for those who ask after every step."""
         return self._kernel.live
+
+    @property
+    def sites(self) -> tuple[Hashable, ...]:
+        """Where in the text the leaves stand whose step the observer is told of: one, or a writer and its reader."""
+        return self._kernel.sites
 
     @property
     def definitions(self) -> tuple[str, ...]:

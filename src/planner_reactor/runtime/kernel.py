@@ -12,13 +12,13 @@ silent too and returns None**. So whenever `run` returns an instruction, nothing
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Hashable
 from typing import Any
 
 from planner_reactor.rs.terms import Value
 from planner_reactor.runtime.budgets import Budgets
 from planner_reactor.runtime.killing import abort_body, kill
-from planner_reactor.runtime.outcomes import Observer
+from planner_reactor.runtime.outcomes import Label, Observer
 from planner_reactor.runtime.pause import Passing, Pause
 from planner_reactor.runtime.scheduler import Entry, Scheduler
 from planner_reactor.runtime.strands import (
@@ -42,6 +42,7 @@ class Kernel:
         self.scheduler = scheduler
         self.budgets = budgets
         self.observer = observer
+        self.sites: tuple[Hashable, ...] = ()
         self.note: Callable[..., None] = lambda kind, **fields: None
         self.on_end: Callable[[Root], object] = lambda root: None
         self.silent: deque[Strand] = deque()
@@ -61,6 +62,11 @@ class Kernel:
         self._later: deque[Callable[[], object]] = deque()
         self._draining = False
         self._armed = False
+
+    def tell(self, label: Label, *sites: Hashable) -> None:
+        """Tell the observer, who must be there, of a step of the leaves that stand at these places in the text."""
+        self.sites = sites
+        self.observer(label)  # type: ignore[misc]  # whoever calls this has looked
 
     # -- the loop
 

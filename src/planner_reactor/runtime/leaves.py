@@ -53,7 +53,7 @@ class Mistake:
         kernel = self.kernel
         kernel.steps += 1
         if kernel.observer is not None:
-            kernel.observer((self.name, (), "ab", ()))
+            kernel.tell((self.name, (), "ab", ()), self.where.site)
         strand.cause = "error"
         kernel.note("mistake", name=self.name, place=str(self.where.site), root=strand.root.name)
         return self.ab
@@ -84,7 +84,7 @@ class Test:
         kernel = self.kernel
         kernel.steps += 1
         if kernel.observer is not None:
-            kernel.observer((self.name, self.arguments(strand.frame), "ok" if holds else "ab", ()))
+            kernel.tell((self.name, self.arguments(strand.frame), "ok" if holds else "ab", ()), self.where.site)
         if holds:
             return self.ok
         strand.cause = "failed"
@@ -113,14 +113,14 @@ class Ran:
             return setting.failed.run(strand)
         kernel.steps += 1
         if not (is_number(low) and is_number(high)):
-            observe(kernel, setting.name, values, ok=False)
+            observe(setting, values, ok=False)
             strand.cause = "error"
             return setting.ab
         drawn = kernel.scheduler.random("Ran").uniform(low, high)  # type: ignore[arg-type]
         for slot in setting.targets[:1]:
             strand.frame[slot] = drawn
         if kernel.observer is not None:
-            kernel.observer((setting.name, values, "ok", (drawn,)))
+            kernel.tell((setting.name, values, "ok", (drawn,)), setting.where.site)
         return setting.ok
 
 
@@ -165,7 +165,7 @@ class Pass:
         return None
 
     def observe(self, strand: Strand) -> None:
-        observe(self.kernel, self.setting.name, self.setting.arguments(strand.frame), ok=True)
+        observe(self.setting, self.setting.arguments(strand.frame), ok=True)
 
     def cancel(self, strand: Strand) -> None:
         self.kernel.withdraw(strand)
@@ -174,7 +174,7 @@ class Pass:
         """A step at once: no time was to pass, or the argument is no number."""
         setting = self.setting
         self.kernel.steps += 1
-        observe(self.kernel, setting.name, setting.arguments(strand.frame), ok=ok)
+        observe(setting, setting.arguments(strand.frame), ok=ok)
         strand.cause = "" if ok else "error"
         return setting.ok if ok else setting.ab
 
@@ -255,7 +255,7 @@ class Use:
         if outcome is None:
             if self._announces:
                 kernel.steps += 1
-                observe(kernel, self.name, values, ok=True, status="wait")
+                observe(self.setting, values, ok=True, status="wait")
             return None
         strand.state = RUNNING
         onward = self.finish(strand, values, outcome)
@@ -269,7 +269,7 @@ class Use:
         kernel = self.kernel
         kernel.steps += 1
         if kernel.observer is not None:
-            kernel.observer((self.name, values, "ok" if outcome.ok else "ab", outcome.values))
+            kernel.tell((self.name, values, "ok" if outcome.ok else "ab", outcome.values), self.where.site)
         return self.ok if outcome is STOPPED and self.slot < 0 else self.take(strand, outcome)
 
     def take(self, strand: Strand, outcome: Outcome) -> Instruction:
@@ -292,7 +292,7 @@ class Use:
         self.control.cancel(strand)
 
 
-def observe(kernel: Kernel, name: str, values: tuple[Value, ...], *, ok: bool, status: str = "") -> None:
+def observe(setting: Setting, values: tuple[Value, ...], *, ok: bool, status: str = "") -> None:
     """Tell the observer, if there is one, of a step without results."""
-    if kernel.observer is not None:
-        kernel.observer((name, values, status or ("ok" if ok else "ab"), ()))
+    if setting.kernel.observer is not None:
+        setting.kernel.tell((setting.name, values, status or ("ok" if ok else "ab"), ()), setting.where.site)

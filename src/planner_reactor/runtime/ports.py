@@ -180,7 +180,8 @@ def communicated(
     kernel.steps += 1
     kernel.rendezvous += 1
     if kernel.observer is not None:
-        kernel.observer(("COM", (name, value), "ok", ()))
+        writer, reader = (own, leaf) if isinstance(own, Out) else (leaf, own)
+        kernel.tell(("COM", (name, value), "ok", ()), writer.where.site, reader.where.site)
     partner.state = RUNNING
     kernel.advance(partner, leaf.ok)
     if kernel.due:
