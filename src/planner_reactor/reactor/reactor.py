@@ -18,10 +18,10 @@ from planner_reactor.link.channels import PerceptionChannel
 from planner_reactor.link.messages import Adaptation, PerceptionKind
 from planner_reactor.reactor.adaptation import Transaction, Transactions, drained, refuse_unsafe_kills
 from planner_reactor.reactor.admission import Standing, examine
-from planner_reactor.reactor.bounds import Bounds
 from planner_reactor.reactor.built_ins import BuiltIns
 from planner_reactor.reactor.laws import Laws
 from planner_reactor.reactor.structure import REACTION, Reaction
+from planner_reactor.rs.bounds import Bounds
 from planner_reactor.rs.parser import parse_program
 from planner_reactor.rs.printer import show
 from planner_reactor.rs.terms import Process, Program, Value, operands
@@ -137,7 +137,7 @@ class Reactor:
             {name: process.limit for name, process in self.host.processes.items()},
             self._bodies_serving,
         )
-        return sum(bounds.situation(s) for s in drained(adaptation)) + MARGIN
+        return bounds.drains(drained(adaptation)) + MARGIN
 
     def _bodies_serving(self, situation: str) -> tuple[Process, ...]:
         serving = (r.schema.body for r in self.reactions.values() if r.situation == situation)
