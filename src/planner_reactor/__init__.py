@@ -1,7 +1,7 @@
 """planner-reactor: robot programs that start acting at once and keep improving while they run.
 
 Everything that the command does is also a call of the same name here: `run`, `check`, `loop`, `kit`, `plan`,
-`network`, `experiment`, `bench` (see `planner_reactor.calls`). They are imported only when they are asked for.
+`network`, `experiment`, `bench`, `verify` (see `planner_reactor.calls`). They are imported only when they are asked for.
 """
 
 from __future__ import annotations
@@ -16,8 +16,9 @@ if TYPE_CHECKING:
     from planner_reactor.calls.networks import network
     from planner_reactor.calls.planning import plan
     from planner_reactor.calls.running import run
+    from planner_reactor.calls.verifying import verify
 
-__all__ = ["bench", "check", "experiment", "kit", "loop", "network", "plan", "run"]
+__all__ = ["bench", "check", "experiment", "kit", "loop", "network", "plan", "run", "verify"]
 
 _MODULES = {
     "bench": "measuring",
@@ -28,6 +29,7 @@ _MODULES = {
     "network": "networks",
     "plan": "planning",
     "run": "running",
+    "verify": "verifying",
 }
 
 

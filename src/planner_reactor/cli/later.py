@@ -11,7 +11,6 @@ LATER = {
     "evolve": ("show the steps that a process can take.", "FILE.rsl 'NAME[args]'"),
     "limits": ("show the limit set of a process.", "FILE.rsl 'NAME[args]'"),
     "lts": ("write the labelled transition system of a process.", "FILE.rsl 'NAME[args]' -o OUT.aut"),
-    "verify": ("model-check a process, or an adaptation of it.", "FILE.rsl 'NAME[args]'"),
     "dynamics": ("derive action schemas from a model of the environment.", "FILE.rsl 'NAME[args]'"),
     "reactor": ("run the reactor as a process of its own.", ""),
     "planner": ("run the planner as a process of its own.", ""),

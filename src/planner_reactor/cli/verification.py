@@ -1,0 +1,67 @@
+"""`verify`: what holds of every run of a process."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from planner_reactor.cli import options
+from planner_reactor.cli.application import command
+from planner_reactor.cli.printing import print_json, reserved_output
+from planner_reactor.errors import InputError
+
+VERDICTS = {True: "holds", False: "does not hold", None: "not decided within the limit"}
+
+
+@command(
+    "cell.rsl Main",
+    "cell.rsl Main --property 'always (asserted Kit -> eventually succeeded Kit) under weak fairness' --json",
+)
+def verify(
+    file: Annotated[Path, typer.Argument(metavar="FILE.rsl", help="The program.", show_default=False)],
+    process: Annotated[str, typer.Argument(metavar="'NAME[args]'", help="The process, with values as arguments.")],
+    property: Annotated[
+        list[str] | None, typer.Option("--property", metavar="TEXT", help="What every run is to have; may be repeated.")
+    ] = None,
+    host: options.HostModule = None,
+    limit: Annotated[int, typer.Option("--limit", metavar="N", help="Look at no more states.")] = 100_000,
+    adapt: Annotated[
+        str | None, typer.Option("--adapt", metavar="SCRIPT", help="Verify this adaptation of it instead.")
+    ] = None,
+    mode: options.ModeName = "drain",
+    as_json: options.Json = False,
+) -> int:
+    """Check every run of a process: exit status 1 if something does not hold or is not decided."""
+    if adapt is not None:  # the seam for verified adaptation
+        raise InputError("--adapt is not in this version")
+    from planner_reactor.calls import verifying
+
+    with reserved_output():
+        result = verifying.verify(file, process, properties=property or (), host=host, limit=limit)
+    if as_json:
+        print_json(result)
+    else:
+        _show(result)
+    verdicts = (result["deadlock_free"], result["zeno_free"], *(p["holds"] for p in result["properties"]))
+    return 0 if all(verdict is True for verdict in verdicts) else 1
+
+
+def _show(result: dict[str, Any]) -> None:
+    rows = [("deadlock_free", result["deadlock_free"]), ("zeno_free", result["zeno_free"])]
+    for name, verdict in [*rows, *((p["property"], p["holds"]) for p in result["properties"])]:
+        print(f"{name}: {VERDICTS[verdict]}")
+    if result["refuted"] is not None:
+        print(f"counterexample to {result['refuted']}:")
+        _show_steps(result["counterexample"], result["cycle"])
+    print(f"{result['states']} states" + ("" if result["complete"] else ", and more that were not looked at"))
+
+
+def _show_steps(steps: list[str], cycle: int) -> None:
+    for number, step in enumerate(steps, 1):
+        if number == len(steps) - cycle + 1:
+            print("  and then for ever:")
+        print(f"  {number:3}  {step}")
+    if not cycle:
+        print("       and then nothing more can happen")
