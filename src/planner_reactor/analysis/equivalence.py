@@ -1,22 +1,27 @@
-"""When two processes are the same: strong bisimilarity with outcomes, by partition refinement.
+"""When two processes are the same: bisimilarity with outcomes, strong, or branching with some labels hidden.
 
 Two processes are equal if they offer the same labels (passing time included) into equal states, and end alike: with
 the same outcome and, if `bindings` are visible, the same results. Algebraic laws (docs/language.md, Laws) are claims of
-this kind. Causes of aborts and where a term stood in the text are not seen.
+this kind. Causes of aborts and where a term stood in the text are not seen. `partitions` does the work.
+
+Branching bisimilarity hides labels that nobody outside sees, such as rendezvous at a local port; a process that can go
+on for ever by itself is told from one that cannot (divergence).
 """
 
 from __future__ import annotations
 
-from collections.abc import Hashable
+from collections.abc import Callable, Hashable, Sequence
 
 import msgspec
 
-from planner_reactor.analysis.explore import canonical, successors
-from planner_reactor.errors import BudgetError
-from planner_reactor.rs.configurations import Config, Label, World
+from planner_reactor.analysis.partitions import branching, quotient, strong
+from planner_reactor.analysis.transitions import Transitions, build
+from planner_reactor.rs.configurations import Label, World
 from planner_reactor.rs.evolves import started
-from planner_reactor.rs.states import Ended
-from planner_reactor.rs.terms import Process
+from planner_reactor.rs.terms import Process, Value
+
+LIMIT = 5_000
+"""States that one side of a comparison may have, unless a caller says otherwise."""
 
 
 class Behaviour(msgspec.Struct, frozen=True):
@@ -26,56 +31,62 @@ class Behaviour(msgspec.Struct, frozen=True):
     ends: tuple[Hashable, ...]
 
 
-def behaviour(process: Process, world: World, *, bindings: bool = False, limit: int = 5_000) -> Behaviour:
+def behaviour(process: Process, world: World, *, bindings: bool = False, limit: int = LIMIT) -> Behaviour:
     """The transition system of a process; `BudgetError` above `limit` states."""
-    first = canonical(started(process, world))
-    numbers = {first: 0}
-    waiting = [first]
-    moves: list[tuple[tuple[Label, int], ...]] = []
-    for state in waiting:  # grows while it is read
-        found = []
-        for step in successors(state, world):
-            after = canonical(step.after)
-            if after not in numbers:
-                if len(numbers) >= limit:
-                    raise BudgetError("states", f"more than {limit} states")
-                numbers[after] = len(numbers)
-                waiting.append(after)
-            found.append((step.label, numbers[after]))
-        moves.append(tuple(found))
-    return Behaviour(tuple(moves), tuple(_end(state, bindings) for state in waiting))
+    return seen(build(started(process, world), world, limit=limit), bindings=bindings)
 
 
-def _end(state: Config, bindings: bool) -> Hashable:
-    (_, term) = state.roots[-1]
-    if not isinstance(term, Ended):
-        return None
-    return (term.ok, term.bindings) if bindings else term.ok
+def seen(transitions: Transitions, *, bindings: bool = False) -> Behaviour:
+    """What an observer sees of a transition system: its moves, and how its last root has ended."""
+    ends: list[Hashable] = []
+    for state in range(len(transitions)):
+        outcome = transitions.outcomes(state)[-1]
+        ends.append(outcome if bindings or outcome is None else outcome[0])
+    return Behaviour(tuple(transitions.moves), tuple(ends))
 
 
-def bisimilar(p: Process, q: Process, world: World, *, bindings: bool = False, limit: int = 5_000) -> bool:
+def bisimilar(p: Process, q: Process, world: World, *, bindings: bool = False, limit: int = LIMIT) -> bool:
     """Are the two processes strongly bisimilar, outcomes included?"""
-    left = behaviour(p, world, bindings=bindings, limit=limit)
-    right = behaviour(q, world, bindings=bindings, limit=limit)
+    return same(*(behaviour(each, world, bindings=bindings, limit=limit) for each in (p, q)))
+
+
+def branching_bisimilar(
+    p: Process,
+    q: Process,
+    world: World,
+    *,
+    hidden: Callable[[Label], bool],
+    bindings: bool = False,
+    limit: int = LIMIT,
+) -> bool:
+    """Are the two processes branching bisimilar with divergence, if nobody sees the labels that are `hidden`?"""
+    return same(*(behaviour(each, world, bindings=bindings, limit=limit) for each in (p, q)), hidden=hidden)
+
+
+def same(left: Behaviour, right: Behaviour, *, hidden: Callable[[Label], bool] | None = None) -> bool:
+    """Are the first states bisimilar: strongly, or branching if some labels are hidden?"""
     shift = len(left.moves)
     moves = [*left.moves, *(tuple((label, s + shift) for label, s in m) for m in right.moves)]
-    classes = _refined(moves, [*left.ends, *right.ends])
+    classes = classified(moves, [*left.ends, *right.ends], hidden)
     return classes[0] == classes[shift]
 
 
-def _refined(moves: list[tuple[tuple[Label, int], ...]], ends: list[Hashable]) -> list[int]:
-    """The coarsest partition of states that respects ends and moves, as a class number for each state."""
-    classes = _numbered(ends)
-    while True:
-        signatures: list[Hashable] = [
-            (classes[i], frozenset((label, classes[s]) for label, s in m)) for i, m in enumerate(moves)
-        ]
-        finer = _numbered(signatures)
-        if max(finer) == max(classes):
-            return classes
-        classes = finer
+def reduced(whole: Behaviour, *, hidden: Callable[[Label], bool] | None = None) -> Behaviour:
+    """The least transition system that is bisimilar: strongly, or branching if some labels are hidden."""
+    classes = classified(whole.moves, whole.ends, hidden)
+    ends: list[Hashable] = [None] * (max(classes) + 1)
+    for state, c in enumerate(classes):
+        ends[c] = ends[c] if whole.ends[state] is None else whole.ends[state]
+    return Behaviour(tuple(map(tuple, quotient(whole.moves, classes, hidden))), tuple(ends))
 
 
-def _numbered(keys: list[Hashable]) -> list[int]:
-    numbers: dict[Hashable, int] = {}
-    return [numbers.setdefault(key, len(numbers)) for key in keys]
+def classified(
+    moves: Sequence[Sequence[tuple[Label, int]]], ends: Sequence[Hashable], hidden: Callable[[Label], bool] | None
+) -> list[int]:
+    """The class of each state, numbered in order of their first state."""
+    return strong(moves, ends) if hidden is None else branching(moves, ends, hidden)
+
+
+def at_ports(*ports: Value) -> Callable[[Label], bool]:
+    """Hides rendezvous at these ports."""
+    return lambda label: label[0] == "COM" and label[1][0] in ports
