@@ -10,6 +10,8 @@ from types import MappingProxyType
 
 from planner_reactor.rs.expressions import is_number
 from planner_reactor.rs.terms import Value
+from planner_reactor.rs.unknowns import Symbolic
+from planner_reactor.rs.unknowns import equal as decided_equal
 
 TOLERANCE = 1e-9
 """By how much equal numbers may differ, unless a test says otherwise."""
@@ -24,6 +26,8 @@ def less(a: Value, b: Value) -> bool:
 
 
 def equal(a: Value, b: Value, tolerance: Value = TOLERANCE) -> bool:
+    if isinstance(a, Symbolic) or isinstance(b, Symbolic):
+        return decided_equal(a, b, tolerance)
     if is_number(a) and is_number(b) and is_number(tolerance):
         return bool(abs(a - b) <= tolerance)  # type: ignore[operator]
     return a == b

@@ -26,6 +26,7 @@ from planner_reactor.rs.terms import (
     Value,
     Variable,
 )
+from planner_reactor.rs.unknowns import Applied, Symbolic, equal
 
 LARGEST_INTEGER_BITS = 256
 """Integers beyond this size are an error; floats beyond their range are too."""
@@ -70,6 +71,8 @@ def evaluate(
 
 def same(left: Value, right: Value) -> bool:
     """Are two values equal? `1 == 1.0`, but a truth value equals no number."""
+    if isinstance(left, Symbolic) or isinstance(right, Symbolic):
+        return equal(left, right)
     if isinstance(left, bool) is not isinstance(right, bool):
         return False
     try:
@@ -79,8 +82,8 @@ def same(left: Value, right: Value) -> bool:
 
 
 def is_number(value: Value) -> bool:
-    """Is this a number of the language? Truth values are not."""
-    return isinstance(value, int | float) and not isinstance(value, bool)
+    """Is this a number of the language? Truth values are not; an unknown may be one."""
+    return isinstance(value, int | float | Symbolic) and not isinstance(value, bool)
 
 
 _ARITHMETIC: Mapping[str, Callable[[Any, Any], Any]] = {
@@ -121,7 +124,7 @@ def _arithmetic(sign: str, left: Value, right: Value) -> int | float:
     if isinstance(result, int):
         if result.bit_length() > LARGEST_INTEGER_BITS:
             raise EvaluationError(f"{sign} makes an integer of more than {LARGEST_INTEGER_BITS} bits")
-    elif not isfinite(result):
+    elif isinstance(result, float) and not isfinite(result):
         raise EvaluationError(f"{left!r} {sign} {right!r} is not a finite number")
     return result
 
@@ -131,6 +134,8 @@ def _apply(name: str, arguments: list[Value], functions: Mapping[str, Callable[.
     if function is None:
         hint = nearest(name, functions)
         raise EvaluationError(f"no function {name} is registered" + (f", {hint}" if hint else ""))
+    if any(isinstance(argument, Symbolic) for argument in arguments):
+        return Applied(name, tuple(arguments))
     try:
         return function(*arguments)
     except Exception as error:

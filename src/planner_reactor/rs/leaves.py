@@ -41,6 +41,7 @@ from planner_reactor.rs.states import (
 )
 from planner_reactor.rs.store import Store
 from planner_reactor.rs.terms import Value
+from planner_reactor.rs.unknowns import Symbolic
 
 
 class Step(msgspec.Struct, frozen=True):
@@ -97,12 +98,13 @@ def offers(config: Config, world: World, *, seen: Label | None = None) -> Iterat
         if not isinstance(leaf, Leaf) or leaf.name in PASSIVE:
             continue
         if seen is None:
-            yield from _offered(spot, leaf, spots, config, world)
+            yield from offers_of(spot, leaf, spots, config, world)
         elif leaf.name == (seen[0] if seen[0] != "COM" else "OUT") and leaf.arguments == seen[1]:
-            yield from (o for o in _offered(spot, leaf, spots, config, world) if o.label == seen)
+            yield from (o for o in offers_of(spot, leaf, spots, config, world) if o.label == seen)
 
 
-def _offered(spot: Spot, leaf: Leaf, spots: list[Spot], config: Config, world: World) -> Iterator[Offer]:
+def offers_of(spot: Spot, leaf: Leaf, spots: list[Spot], config: Config, world: World) -> Iterator[Offer]:
+    """The steps that one leaf begins; `spots` are all of the configuration."""
     store = config.store
     if leaf.problem:
         yield Offer((leaf.name, (), AB, ()), ((spot, Ended(False, cause="error")),), store)
@@ -141,23 +143,44 @@ def window(leaf: Leaf, world: World) -> tuple[float, float]:
         case "Term":
             return 0.0, _seconds(leaf)
     signature = world.signatures.get(leaf.name)
-    return signature.window if signature is not None and signature.window is not None else (0.0, 0.0)
+    if signature is None or signature.window is None or _mistaken(leaf, world):
+        return 0.0, 0.0
+    return signature.window
+
+
+def _mistaken(leaf: Leaf, world: World) -> bool:
+    """Is an argument not what the basic process declares? Then it aborts at once."""
+    signature = world.signatures.get(leaf.name)
+    kinds = [signature.kind(n) for n in range(len(leaf.arguments))] if signature is not None else []
+    return any(
+        (kind == "number" and not is_number(value)) or (kind == "symbol" and not isinstance(value, str))
+        for kind, value in zip(kinds, leaf.arguments, strict=False)
+    )
 
 
 def _seconds(leaf: Leaf) -> float:
     value = leaf.arguments[0] if leaf.arguments else None
+    if isinstance(value, Symbolic):
+        return value  # type: ignore[return-value]  # arithmetic and order are those of a float; taken as not negative
     return max(0.0, float(value)) if is_number(value) else 0.0  # type: ignore[arg-type]
 
 
 def _ended(spot: Spot, leaf: Leaf, store: Store, world: World) -> Iterator[Offer]:
     """`tau:ΩB`, `tau:℧B` inside the window; urgent only at its end."""
     low, high = window(leaf, world)
-    if not low - TIE <= leaf.age <= high + TIE:
+    if not (_reached(leaf.age, low) and _reached(high, leaf.age)):
         return
     for ok, values in _endings(leaf, world):
-        term = Ended(ok, _results(leaf, values), "" if ok else "failed")
+        term = Ended(ok, _results(leaf, values), "" if ok else "error" if _mistaken(leaf, world) else "failed")
         label = (leaf.name, leaf.arguments, OK if ok else AB, values)
-        yield Offer(label, ((spot, term),), store, leaf.age >= high - TIE)
+        yield Offer(label, ((spot, term),), store, _reached(leaf.age, high))
+
+
+def _reached(later: float, sooner: float) -> bool:
+    """Is the one not before the other? Known instants within a TIE are one."""
+    if isinstance(later, Symbolic) or isinstance(sooner, Symbolic):
+        return bool(later >= sooner)
+    return later >= sooner - TIE
 
 
 def _endings(leaf: Leaf, world: World) -> Iterator[tuple[bool, tuple[Value, ...]]]:
@@ -165,6 +188,8 @@ def _endings(leaf: Leaf, world: World) -> Iterator[tuple[bool, tuple[Value, ...]
         yield (True, ()) if leaf.arguments and is_number(leaf.arguments[0]) else (False, ())
     elif leaf.name in TESTS:
         yield TESTS[leaf.name](*leaf.arguments), ()
+    elif _mistaken(leaf, world):
+        yield False, ()
     else:
         yield from world.endings(leaf.name, leaf.arguments)
 
@@ -272,6 +297,17 @@ def drain(leaf: Leaf, spot: Spot, store: Store, world: World) -> Result | None:
     return WAITS, (), Waiting("DRAIN", situation), store.drain(situation, spot.root)
 
 
+def renew(leaf: Leaf, spot: Spot, store: Store, world: World) -> Result | None:
+    """RENEW[s]: from here on instances of s are of the next version, and reactions serve the versions they know."""
+    return OK, (), Ended(True), store.renewed(str(leaf.arguments[0]))
+
+
+def wait_old(leaf: Leaf, spot: Spot, store: Store, world: World) -> Result | None:
+    """WAITOLD[s]: its start; granted inside the step that ends the last instance of an older version."""
+    situation = str(leaf.arguments[0])
+    return WAITS, (), Waiting("WAITOLD", situation, store.version(situation)), store
+
+
 def inhibit(leaf: Leaf, spot: Spot, store: Store, world: World) -> Result | None:
     return OK, (), Ended(True), store.inhibit(str(leaf.arguments[0]), spot.root, "inhibit")
 
@@ -303,6 +339,12 @@ def report(leaf: Leaf, spot: Spot, store: Store, world: World) -> Result | None:
     return OK, (), Ended(True), store
 
 
+def monitor(leaf: Leaf, spot: Spot, store: Store, world: World) -> Result | None:
+    """ASSUMONITOR, HOLDMONITOR: what they sense is no step; without a period they abort."""
+    period = leaf.arguments[1]
+    return None if is_number(period) and period > 0 else (AB, (), Ended(False, cause="error"), store)  # type: ignore[operator]
+
+
 # ------------------------------------------------------------------------------------------------------ guards
 
 
@@ -314,7 +356,7 @@ def _posted(poster: Spot, leaf: Leaf, spots: list[Spot], config: Config) -> Iter
         return
     for adder, wanted in _named(spots, "ADD", ()):
         changes = ((poster, Ended(True)), (adder, Ended(True, _results(wanted, (label,)))))
-        yield Offer(("POST", (label,), OK, ()), changes, config.store)
+        yield Offer(("POST", (label,), OK, ()), changes, config.store.posted(label))
 
 
 def _named(spots: list[Spot], name: str, arguments: tuple[Value, ...]) -> list[tuple[Spot, Leaf]]:
@@ -336,6 +378,15 @@ def _killed(killer: Spot, leaf: Leaf, spots: list[Spot], config: Config) -> Iter
             group = parts_of(group)[index]
         if all(resting(p) for i, p in enumerate(parts_of(group)) if i != guard.path[-1]):
             yield Offer(("KILL", (label,), OK, ()), ((killer, Ended(True)), (guard, Ended(True))), config.store)
+
+
+def _retired(leaver: Spot, leaf: Leaf, spots: list[Spot], config: Config) -> Iterator[Offer]:
+    """`RETIRE[n]` names `E[n]`: its reaction serves nothing that is asserted after the next RENEW."""
+    (label,) = leaf.arguments
+    if _named(spots, "E", (label,)):
+        yield Offer(("RETIRE", (label,), OK, ()), ((leaver, Ended(True)),), config.store.retire(label))
+    else:
+        yield Offer(("RETIRE", (label,), AB, ()), ((leaver, Ended(False, cause="error")),), config.store)
 
 
 def resting(term: Run, *, sensing: bool | None = None) -> bool:
@@ -375,17 +426,21 @@ RULES: dict[str, Rule] = {
     "WAIT": wait,
     "WAITINHIBIT": wait,
     "DRAIN": drain,
+    "RENEW": renew,
+    "WAITOLD": wait_old,
     "INHIBIT": inhibit,
     "UNINHIBIT": uninhibit,
     "DISABLE": disable,
     "ENABLE": enable,
     "STUB": stub,
     "REPORT": report,
+    "ASSUMONITOR": monitor,
+    "HOLDMONITOR": monitor,
 }
 
-MEETINGS: dict[str, Meeting] = {"OUT": _communicated, "POST": _posted, "KILL": _killed}
+MEETINGS: dict[str, Meeting] = {"OUT": _communicated, "POST": _posted, "KILL": _killed, "RETIRE": _retired}
 
-PASSIVE = frozenset({"NIL", "IN", "E", "ADD", "ASSUMONITOR", "HOLDMONITOR"})
+PASSIVE = frozenset({"NIL", "IN", "E", "ADD"})
 """Leaves that have no step of their own."""
 
 RESTING = frozenset({"NIL", "E", "ADD", "SIT", "ASSUMONITOR", "HOLDMONITOR"})

@@ -18,6 +18,7 @@ from typing import TypeAlias
 import msgspec
 
 from planner_reactor.errors import Place
+from planner_reactor.rs.unknowns import Symbolic, equal
 
 Value: TypeAlias = object
 """A run-time value: a number, a string (symbols are their names), a boolean, or a host's own immutable object."""
@@ -227,7 +228,10 @@ class Schema:
         """Does this clause apply to these argument values?"""
         if len(values) != len(self.head):
             return False
-        return all(isinstance(h, Parameter) or h.value == v for h, v in zip(self.head, values, strict=True))
+        return all(
+            isinstance(h, Parameter) or h.value == v or (isinstance(v, Symbolic) and equal(v, h.value))
+            for h, v in zip(self.head, values, strict=True)
+        )
 
 
 class Program:
