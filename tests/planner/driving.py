@@ -20,8 +20,6 @@ from planner_reactor.logic.reader import read_domain
 from planner_reactor.planner import Planner
 from planner_reactor.rs.loading import load
 from planner_reactor.rs.parser import parse_program
-from planner_reactor.rs.printer import show
-from planner_reactor.rs.terms import Process
 from planner_reactor.rs.vocabulary import BUILT_IN, Kind, Signature
 
 WORKCELL = Path(planner_reactor.workcell.__file__).parent
@@ -138,12 +136,12 @@ def planner_without(domain: Domain, names: Iterable[str], **options: Any) -> Pla
 
 def texts(planner: Planner) -> dict[str, str]:
     """Situation → its reaction as text."""
-    return {s.name: show(s.process) for s in planner.model if s.process is not None}
+    return {s.name: s.text for s in planner.model if s.text}
 
 
-def image(planner: Planner) -> dict[str, tuple[Process | None, frozenset[str], frozenset[str]]]:
+def image(planner: Planner) -> dict[str, tuple[str, frozenset[str], frozenset[str]]]:
     """Everything about the segments that incremental and fresh planning must agree on."""
-    return {s.name: (s.process, s.required, s.in_use) for s in planner.model}
+    return {s.name: (s.text, s.required, s.in_use) for s in planner.model}
 
 
 def kitting(path: Path = KITTING) -> Domain:

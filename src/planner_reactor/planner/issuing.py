@@ -19,9 +19,10 @@ from planner_reactor.planner import reactions
 from planner_reactor.planner.beliefs import Beliefs
 from planner_reactor.planner.drafts import Draft
 from planner_reactor.planner.model import Model, Segment
+from planner_reactor.planner.sheets import Sheets
 from planner_reactor.planner.situations import Situation
 from planner_reactor.planner.structure import Action
-from planner_reactor.rs.terms import Process
+from planner_reactor.rs.printer import show
 
 MOST_REFUSALS = 5
 """So often in a row the reactor may refuse what is planned for a situation, or for none."""
@@ -43,7 +44,7 @@ class UnderWay(msgspec.Struct, frozen=True):
 class _Parts:
     """What one adaptation consists of, while it is put together."""
 
-    clauses: dict[int, Process] = field(default_factory=dict)
+    clauses: dict[int, str] = field(default_factory=dict)
     kills: list[int] = field(default_factory=list)
     changes: list[Change] = field(default_factory=list)
     removed: list[str] = field(default_factory=list)
@@ -67,8 +68,12 @@ class Issuer:
     under_way: dict[int, UnderWay] = field(default_factory=dict)
     introduced: list[Segment] = field(default_factory=list)  # by the last issue, and still stubs
     refused_alone: int = 0  # adaptations of no situation that were not applied, in a row
+    sheets: Sheets = field(init=False)
     _watched: object = None  # for which assumptions the monitors are as they should be
     _strays: list[int] = field(default_factory=list)  # monitors that were to be removed, and are still there
+
+    def __post_init__(self) -> None:
+        self.sheets = Sheets(self.model.names, self.fold)
 
     # ------------------------------------------------------------------------------------- what may go out
 
@@ -94,20 +99,20 @@ class Issuer:
         """
         segment, model = draft.segment, self.model
         refinement = draft.refinements[segment.situation]
-        process = reactions.reaction(refinement, model.names, fold=self.fold)
+        text = self.sheets.reaction(refinement)
         gone = model.orphans(segment, refinement.children)
         new = self._new(draft)
         before = tuple(model.snapshot([segment.situation, *new, *(o.situation for o in gone)]))
-        same = segment.label is not None and process == segment.process
+        same = segment.label is not None and text == segment.text
         told = segment.required
         used = set(model.used())
         parts = _Parts()
         first = segment.label is None
         if first and segment.situation == model.root:
-            self._add(parts, reactions.root(segment.situation, model.names))
+            self._add(parts, show(reactions.root(segment.situation, model.names)))
         model.put(segment, refinement)
         if not same:
-            self._replace(parts, segment, process)
+            self._replace(parts, segment, text)
         if not same or told != refinement.required:
             assumptions = tuple(sorted(refinement.required))
             parts.changes.append(
@@ -135,7 +140,7 @@ class Issuer:
         self._watch(parts, beliefs, holding)
         for atom, action in asked.items():
             if atom not in self.requests:
-                label = self._add(parts, reactions.request(action, atom.predicate, atom.arguments))
+                label = self._add(parts, show(reactions.request(action, atom.predicate, atom.arguments)))
                 self.requests[atom] = label
         return self._send(parts, None, frozenset(), (), monitors, used)
 
@@ -156,29 +161,29 @@ class Issuer:
         found.pop(draft.segment.situation, None)
         return found
 
-    def _add(self, parts: _Parts, process: Process) -> int:
+    def _add(self, parts: _Parts, text: str) -> int:
         label = self.next_label
         self.next_label += 1
-        parts.clauses[label] = process
+        parts.clauses[label] = text
         parts.adds.append(label)
         return label
 
-    def _replace(self, parts: _Parts, segment: Segment, process: Process) -> None:
+    def _replace(self, parts: _Parts, segment: Segment, text: str) -> None:
         if segment.label is not None:
             parts.kills.append(segment.label)
-        segment.process = process
-        segment.label = self._add(parts, process)
+        segment.text = text
+        segment.label = self._add(parts, text)
 
     def _introduce(self, parts: _Parts, situation: Situation, path: tuple[int, ...], draft: Draft) -> None:
         refinement = draft.refinements.get(situation)
         segment = self.model.new(situation, self.model.context(situation, draft.drafted), path)
         self.model.put(segment, refinement)
         if refinement is None:
-            process = reactions.stub(situation, self.model.names, self.stub_ms)
+            text = self.sheets.stub(situation, self.stub_ms)
             self.introduced.append(segment)
         else:
-            process = reactions.reaction(refinement, self.model.names, fold=self.fold)
-        self._replace(parts, segment, process)
+            text = self.sheets.reaction(refinement)
+        self._replace(parts, segment, text)
         assumptions = tuple(sorted(segment.required))
         parts.changes.append(Change(situation=segment.name, base=segment.version, assumptions=assumptions, fresh=True))
 
@@ -205,7 +210,7 @@ class Issuer:
         self._strays.clear()
         for (kind, name), period in wanted.items():
             if (kind, name) not in self.monitors:
-                self.monitors[kind, name] = self._add(parts, reactions.monitor(kind, name, period))
+                self.monitors[kind, name] = self._add(parts, show(reactions.monitor(kind, name, period)))
 
     def _send(
         self,

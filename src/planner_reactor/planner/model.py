@@ -18,7 +18,6 @@ from msgspec.structs import replace
 from planner_reactor.logic.formulas import Atom
 from planner_reactor.planner.reactions import Names
 from planner_reactor.planner.situations import Child, Context, Refinement, Situation
-from planner_reactor.rs.terms import Process
 
 
 class Segment(msgspec.Struct):
@@ -34,7 +33,7 @@ class Segment(msgspec.Struct):
     path: tuple[int, ...]
     context: Context
     refinement: Refinement | None = None
-    process: Process | None = None
+    text: str = ""  # of its reaction, as it was issued last
     label: int | None = None
     version: int = 0
     pending: int | None = None

@@ -12,10 +12,11 @@ arguments that are no constants, then the results in the order of the text.
 from __future__ import annotations
 
 import re
+from typing import Protocol
 
 from planner_reactor.logic.formulas import Numeral, Term
 from planner_reactor.planner.plan import Parameter, Result
-from planner_reactor.planner.situations import Refinement, Situation, situation_of
+from planner_reactor.planner.situations import Composition, Situation, situation_of
 from planner_reactor.planner.structure import (
     Action,
     Choice,
@@ -26,7 +27,6 @@ from planner_reactor.planner.structure import (
     Tree,
     actions_of,
 )
-from planner_reactor.rs.printer import show
 from planner_reactor.rs.terms import (
     ABORT,
     STOP,
@@ -40,7 +40,6 @@ from planner_reactor.rs.terms import (
     Not,
     Number,
     Process,
-    Schema,
     Seq,
     Spawn,
     Symbol,
@@ -84,17 +83,24 @@ class Names:
         return name
 
 
-def reaction(refinement: Refinement, names: Names, *, fold: bool) -> Process:
+class Lettering(Protocol):
+    """What stands for the names of situations and for constants."""
+
+    def situation(self, situation: Situation) -> Symbol: ...
+
+    def constant(self, term: Term) -> Expression: ...
+
+
+def reaction(situation: Situation, composition: Composition, lettering: Lettering, *, fold: bool) -> Process:
     """The reaction of a refined situation."""
-    assert refinement.tree is not None
-    return _Writing(refinement, names, fold).reaction(refinement.tree)
+    return _Writing(situation, composition, lettering, fold).reaction(composition.tree)
 
 
-def stub(situation: Situation, names: Names, period_ms: int) -> Process:
+def stub(situation: Situation, lettering: Lettering, period_ms: int) -> Process:
     """The reaction of a situation that is not refined yet: it tells the planner, waits and fails (P4
     of R §8.3).
     """
-    name = Symbol(names[situation])
+    name = lettering.situation(situation)
     parameters = [f"x{n + 1}" for n in range(situation.arguments.count(None))]
     waiting = Cond((Call("STUB", (name,)), Call("SUSPEND", (Number(period_ms),))))
     body = Seq((waiting, Call("FAIL", (name, Variable(INSTANCE)))))
@@ -108,46 +114,46 @@ def root(situation: Situation, names: Names) -> Process:
 
 def monitor(kind: str, assumption: str, period_ms: int) -> Process:
     """`ASSUMONITOR[a, ms]` or `HOLDMONITOR[a, ms]`."""
-    return Call(kind, (_constant(assumption), Number(period_ms)))
+    return Call(kind, (constant(assumption), Number(period_ms)))
 
 
 def request(action: Action, predicate: str, arguments: tuple[Term, ...]) -> Process:
     """A perception request: run the sensing action, report what it says of the condition."""
-    about = (_constant(predicate), *(_constant(a) for a in arguments))
-    told = Call(_process_name(action.name), tuple(_constant(a) for a in action.arguments))
+    about = (constant(predicate), *(constant(a) for a in arguments))
+    told = Call(_process_name(action.name), tuple(constant(a) for a in action.arguments))
     return If(told, Call("REPORT", (*about, Symbol("holds"))), Call("REPORT", (*about, Symbol("fails"))))
 
 
-def clause(label: int, process: Process) -> str:
+def clause(label: int, text: str) -> str:
     """`P[n] = …` as text."""
-    return show(Schema(REACTION, (Number(label),), (), process))
+    return f"{REACTION}[{label}] = {text}"
 
 
 class _Writing:
     """Writes one refinement; gives names to what is handed on."""
 
-    def __init__(self, refinement: Refinement, names: Names, fold: bool) -> None:
-        self._refinement = refinement
-        self._names = names
+    def __init__(self, situation: Situation, composition: Composition, lettering: Lettering, fold: bool) -> None:
+        self._situation = situation
+        self._composition = composition
+        self._lettering = lettering
         self._fold = fold
         self._variables: dict[Term, str] = {}
-        for number, constant in enumerate(refinement.situation.arguments):
-            if constant is None:
+        for number, argument in enumerate(situation.arguments):
+            if argument is None:
                 self._variables[Parameter(number)] = f"x{len(self._variables) + 1}"
         self._parameters = tuple(self._variables.values())
 
     def reaction(self, tree: Tree) -> Process:
-        refinement = self._refinement
-        name = Symbol(self._names[refinement.situation])
+        name = self._lettering.situation(self._situation)
         self._name_results(tree)
         instance = Variable(INSTANCE)
         success: Process = Call("SUCCEED", (name, instance))
-        if refinement.outputs[0]:
-            outputs = tuple(self._expression(term) for term in refinement.outputs[0])
+        if self._composition.outputs[0]:
+            outputs = tuple(self._expression(term) for term in self._composition.outputs[0])
             success = Seq((Call("UPDATE", (name, instance, *outputs)), success))
         body = Cond((Not(self._body(tree, success)), Call("FAIL", (name, instance))))
         head = Call("SIT", (name,), (INSTANCE, *self._parameters))
-        several = None in refinement.situation.arguments and not self._fold
+        several = None in self._situation.arguments and not self._fold
         return Spawn(head, body) if several else Loop(head, body)
 
     def _name_results(self, tree: Tree) -> None:
@@ -155,8 +161,8 @@ class _Writing:
         comes from.
         """
         same: dict[Term, Term] = {}
-        for outputs in self._refinement.outputs[1:]:
-            for first, other in zip(self._refinement.outputs[0], outputs, strict=True):
+        for outputs in self._composition.outputs[1:]:
+            for first, other in zip(self._composition.outputs[0], outputs, strict=True):
                 if isinstance(other, Result):
                     same[other] = first
         for action in actions_of(tree):
@@ -168,7 +174,7 @@ class _Writing:
     def _body(self, tree: Tree, success: Process) -> Process:
         """The composition, then `success`; from what upsets something on, a failure is cleaned up after."""
         parts = list(tree.parts) if isinstance(tree, InOrder) else [tree]
-        upsets = self._refinement.upsets
+        upsets = self._composition.upsets
         at = next((n for n, part in enumerate(parts) if not upsets.isdisjoint(actions_of(part))), len(parts))
         if at < len(parts):
             part = parts[at]
@@ -179,7 +185,7 @@ class _Writing:
                 at += 1  # it did what it had to, so only the rest can fail
         if at == len(parts):
             return cond(*map(self._process, parts), success)
-        cleanup = Seq((*(self._call(action) for action in self._refinement.cleanup), ABORT))
+        cleanup = Seq((*(self._call(action) for action in self._composition.cleanup), ABORT))
         rest = If(cond(*map(self._process, parts[at:])), success, cleanup)
         return cond(*map(self._process, parts[:at]), rest)
 
@@ -206,17 +212,17 @@ class _Writing:
         situation = situation_of(action, fold=self._fold)
         given = [
             self._expression(term)
-            for term, constant in zip(action.arguments, situation.arguments, strict=True)
-            if constant is None
+            for term, folded in zip(action.arguments, situation.arguments, strict=True)
+            if folded is None
         ]
-        return Call("REASSERT", (Symbol(self._names[situation]), *given), results)
+        return Call("REASSERT", (self._lettering.situation(situation), *given), results)
 
     def _expression(self, term: Term) -> Expression:
         name = self._variables.get(term)
-        return Variable(name) if name is not None else _constant(term)
+        return Variable(name) if name is not None else self._lettering.constant(term)
 
 
-def _constant(term: Term) -> Expression:
+def constant(term: Term) -> Expression:
     """A constant as a symbol, or quoted where a symbol would be read as something else."""
     if isinstance(term, Numeral):
         return Number(term.value)

@@ -27,7 +27,6 @@ from planner_reactor.planner.refinement import refine
 from planner_reactor.planner.relaxing import Assuming
 from planner_reactor.planner.situations import Context, Refinement, Situation
 from planner_reactor.planner.steps import Step, StepKind
-from planner_reactor.planner.structure import first_action
 from planner_reactor.planner.theory import Theory
 
 
@@ -105,7 +104,7 @@ class Reducer:
         situation = draft.waiting.pop(0) if draft.waiting else draft.segment.situation
         if situation not in draft.refinements:
             refinement = self._refine(situation, draft)
-            if refinement.tree is None:
+            if refinement.composition is None:
                 if not draft.fail(situation):
                     self._give_up(draft.segment, refinement)
                 return self._step("refine", draft)
@@ -115,10 +114,9 @@ class Reducer:
 
     def _to_refine(self, draft: Draft, refinement: Refinement) -> list[Situation]:
         """Which new sub-situations must be concrete at once."""
-        assert refinement.tree is not None
         new = list(dict.fromkeys(c.situation for c in refinement.children if c.situation not in self.model.segments))
         if draft.segment.is_stub:
-            first = first_action(refinement.tree)
+            first = refinement.begins_with
             begun = [c.situation for c in refinement.children if first and c.arguments == first.arguments]
             new = [s for s in new if first and first.abstract and s.schema == first.name and s in begun]
         done = {*draft.refinements, *draft.waiting, *draft.left}

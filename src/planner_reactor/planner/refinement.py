@@ -20,7 +20,7 @@ from planner_reactor.planner.beliefs import Beliefs
 from planner_reactor.planner.plan import END, START, Link, Parameter, Plan, Step
 from planner_reactor.planner.problem import Consulted, Problem, Truth
 from planner_reactor.planner.search import Search
-from planner_reactor.planner.situations import Child, Context, Refinement, Situation, situation_of
+from planner_reactor.planner.situations import Child, Composition, Context, Refinement, Situation, situation_of
 from planner_reactor.planner.structure import Action, Tree, action_of, arrange, needed_before
 from planner_reactor.planner.theory import Theory
 from planner_reactor.planner.threats import Threats
@@ -59,13 +59,13 @@ class _Refining:
     def run(self) -> Refinement:
         problem = self._problem()
         tree = self._solve(problem, NESTED_TESTS)
+        composition = None
+        if tree is not None:
+            composition = Composition(tree, tuple(self.outputs), tuple(self.cleanup), frozenset(self.upsets))
         return Refinement(
             self.situation,
-            tree,
-            tuple(self.outputs),
+            composition,
             tuple(self.children),
-            tuple(self.cleanup),
-            frozenset(self.upsets),
             frozenset(self.required),
             frozenset(self.presumed - self.required),
             frozenset(self.consulted.missing),

@@ -12,7 +12,7 @@ import msgspec
 
 from planner_reactor.logic.formulas import Atom, Numeral, Term
 from planner_reactor.planner.beliefs import in_doubt
-from planner_reactor.planner.structure import Action, Tree, renamed
+from planner_reactor.planner.structure import Action, Tree, first_action, renamed
 
 
 class Situation(msgspec.Struct, frozen=True):
@@ -25,7 +25,7 @@ class Situation(msgspec.Struct, frozen=True):
 
     def renamed(self, constants: Mapping[Term, Term]) -> Situation:
         """The same situation of other constants."""
-        return Situation(self.schema, tuple(a if a is None else constants.get(a, a) for a in self.arguments))
+        return Situation(self.schema, tuple([a if a is None else constants.get(a, a) for a in self.arguments]))
 
 
 class Context(msgspec.Struct, frozen=True):
@@ -50,24 +50,33 @@ class Child(msgspec.Struct, frozen=True):
     replayed: frozenset[int] | None
 
     def renamed(self, constants: Mapping[Term, Term]) -> Child:
-        arguments = tuple(constants.get(a, a) for a in self.arguments)
+        arguments = tuple([constants.get(a, a) for a in self.arguments])
         return Child(self.situation.renamed(constants), arguments, self.granted, self.replayed)
 
 
-class Refinement(msgspec.Struct, frozen=True):
-    """How a situation is made concrete; `tree` is None if no plan was found.
+class Composition(msgspec.Struct, frozen=True):
+    """What a situation does. `outputs` are its results in each branch; `cleanup` has to be done if it fails after
+    one of the actions `upsets`.
+    """
 
-    `cleanup` has to be done if it fails after one of the actions `upsets`. `required` are the assumptions
-    that it rests on, `presumed` those that it only brings in, `missing` relaxed ones that were looked for,
-    `asked` conditions that nobody knows, `blocked` actions that stand too high to be used.
+    tree: Tree
+    outputs: tuple[tuple[Term, ...], ...] = ()
+    cleanup: tuple[Action, ...] = ()
+    upsets: frozenset[Action] = frozenset()
+
+
+class Refinement(msgspec.Struct, frozen=True):
+    """How a situation is made concrete; `composition` is None if no plan was found.
+
+    `required` are the assumptions that it rests on, `presumed` those that it only brings in, `missing` relaxed
+    ones that were looked for, `asked` conditions that nobody knows, `blocked` actions that stand too high to be
+    used. A refinement may be that of another situation with constants `exchanged`: its composition is shared,
+    and speaks of the first one's.
     """
 
     situation: Situation
-    tree: Tree | None
-    outputs: tuple[tuple[Term, ...], ...] = ()
+    composition: Composition | None
     children: tuple[Child, ...] = ()
-    cleanup: tuple[Action, ...] = ()
-    upsets: frozenset[Action] = frozenset()
     required: frozenset[str] = frozenset()
     presumed: frozenset[str] = frozenset()
     missing: frozenset[str] = frozenset()
@@ -75,6 +84,25 @@ class Refinement(msgspec.Struct, frozen=True):
     blocked: frozenset[str] = frozenset()
     warnings: tuple[str, ...] = ()
     gave_up: bool = False
+    exchanged: dict[Term, Term] = {}
+
+    @property
+    def situation_first(self) -> Situation:
+        """The situation of which the composition speaks."""
+        back = {new: old for old, new in self.exchanged.items()}
+        return self.situation.renamed(back) if back else self.situation
+
+    @property
+    def tree(self) -> Tree | None:
+        """The composition of this situation's own actions."""
+        tree = None if self.composition is None else self.composition.tree
+        return renamed(tree, self.exchanged) if tree is not None and self.exchanged else tree
+
+    @property
+    def begins_with(self) -> Action | None:
+        """Its first action, in the order of the text."""
+        first = None if self.composition is None else first_action(self.composition.tree)
+        return first.renamed(self.exchanged) if first is not None and self.exchanged else first
 
     def serves(self, relaxed: frozenset[str]) -> bool:
         """Would it be the same with these assumptions relaxed?"""
@@ -93,22 +121,22 @@ class Refinement(msgspec.Struct, frozen=True):
             reasons.append("not without " + " or ".join(sorted(self.missing)))
         return f"no plan achieves {name}" + (f" ({'; '.join(reasons)})" if reasons else "")
 
-    def renamed(self, constants: Mapping[Term, Term]) -> Refinement:
+    def renamed(self, constants: dict[Term, Term]) -> Refinement:
         """The same refinement for constants that the domain does not tell apart."""
+        assert not self.exchanged
+        asked = tuple([Atom(a.predicate, tuple([constants.get(t, t) for t in a.arguments])) for a in self.asked])
         return Refinement(
             self.situation.renamed(constants),
-            None if self.tree is None else renamed(self.tree, constants),
-            tuple(tuple(constants.get(t, t) for t in terms) for terms in self.outputs),
-            tuple(child.renamed(constants) for child in self.children),
-            tuple(action.renamed(constants) for action in self.cleanup),
-            frozenset(action.renamed(constants) for action in self.upsets),
+            self.composition,
+            tuple([child.renamed(constants) for child in self.children]),
             _renamed_names(self.required, constants),
             _renamed_names(self.presumed, constants),
             _renamed_names(self.missing, constants),
-            tuple(Atom(a.predicate, tuple(constants.get(t, t) for t in a.arguments)) for a in self.asked),
+            asked,
             self.blocked,
             self.warnings,
             self.gave_up,
+            constants,
         )
 
 

@@ -181,11 +181,13 @@ class _Order:
         if len(parallel) > 1:
             return Together(tuple(self._composed(part) for part in parallel))
         ranked = sorted(blocks, key=lambda block: -block.after.bit_count())
-        for n in range(1, len(ranked)):
-            rest = _members(ranked[n:])
-            if all(rest & ~block.after == 0 for block in ranked[:n]):
-                early = [block for block in blocks if block in ranked[:n]]
-                late = [block for block in blocks if block in ranked[n:]]
+        common, rest = -1, _members(ranked)
+        for block in ranked[:-1]:
+            common &= block.after
+            rest &= ~block.members
+            if rest & ~common == 0:
+                early = [block for block in blocks if not block.members & rest]
+                late = [block for block in blocks if block.members & rest]
                 return _in_order([self._composed(early), self._composed(late)])
         return self._by_levels(blocks)
 
@@ -211,16 +213,30 @@ class _Block(msgspec.Struct, frozen=True):
 
 def _components(blocks: list[_Block]) -> list[list[_Block]]:
     """The blocks in groups between which nothing is ordered, each in the order given."""
-    group = {n: n for n in range(len(blocks))}
+    owner = {number: n for n, block in enumerate(blocks) for number in _numbers(block.members)}
+    present = _members(blocks)
+    leader = list(range(len(blocks)))
+
+    def led_by(n: int) -> int:
+        while leader[n] != n:
+            leader[n] = n = leader[leader[n]]
+        return n
+
     for n, block in enumerate(blocks):
-        for m, other in enumerate(blocks):
-            if group[n] != group[m] and (block.after & other.members or other.after & block.members):
-                old, new = max(group[n], group[m]), min(group[n], group[m])
-                group = {k: new if g == old else g for k, g in group.items()}
+        for number in _numbers(block.after & present):
+            one, other = led_by(n), led_by(owner[number])
+            leader[max(one, other)] = min(one, other)
     found: dict[int, list[_Block]] = {}
     for n, block in enumerate(blocks):
-        found.setdefault(group[n], []).append(block)
+        found.setdefault(led_by(n), []).append(block)
     return list(found.values())
+
+
+def _numbers(bits: int) -> Iterator[int]:
+    while bits:
+        lowest = bits & -bits
+        yield lowest.bit_length() - 1
+        bits ^= lowest
 
 
 def _in_order(parts: list[Tree]) -> Tree:
