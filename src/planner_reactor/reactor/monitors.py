@@ -56,7 +56,7 @@ class Monitors:
 
         def begin(strand: Strand, arguments: tuple[Value, ...]) -> Outcome | None:
             assumption, period = str(arguments[0]), arguments[1]
-            if not isinstance(period, int | float) or period <= 0:
+            if isinstance(period, bool) or not isinstance(period, int | float) or period <= 0:
                 return ERROR
             sense = self._sensed.get(assumption, lambda: None)
 

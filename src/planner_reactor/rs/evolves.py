@@ -149,14 +149,17 @@ def _needed(process: Process, scope: Bindings) -> Bindings:
 
 def terminate(term: Run, store: Store, world: World, root: int) -> tuple[Run, Store]:
     """The term with every ending drawn that follows at once; an ended part of a `#` is left for `decide`."""
-    if term.at_rest and not (term.waits and any(granted(wait, store) for wait in term.waits)):
+    if (waits := term.waits) is not None and not (waits and any(granted(wait, store) for wait in waits)):
         return term, store
-    if parts := parts_of(term):
-        after = list(parts)
-        for index, part in enumerate(parts):
-            after[index], store = terminate(part, store, world, root)
-        if any(new is not old for new, old in zip(after, parts, strict=True)):
-            term = with_parts(term, tuple(after))
+    parts = parts_of(term)
+    after: list[Run] = []
+    for index, part in enumerate(parts):
+        new, store = terminate(part, store, world, root)
+        if new is not part:
+            after = after or list(parts)
+            after[index] = new
+    if after:
+        term = with_parts(term, tuple(after))
     match term:
         case Chain():
             return _chain(term, store, world)
@@ -339,7 +342,7 @@ def _quiet(config: Config, world: World) -> Config:
 
 def _undecided(term: Run, depth: int = 0) -> Iterator[tuple[int, tuple[int, ...]]]:
     """(how many `#` enclose it, path) of every `#` of which a part has ended."""
-    if term.at_rest:
+    if term.waits is not None:
         return
     inner = depth
     if isinstance(term, Group) and term.operator == "#":

@@ -342,7 +342,9 @@ def report(leaf: Leaf, spot: Spot, store: Store, world: World) -> Result | None:
 def monitor(leaf: Leaf, spot: Spot, store: Store, world: World) -> Result | None:
     """ASSUMONITOR, HOLDMONITOR: what they sense is no step; without a period they abort."""
     period = leaf.arguments[1]
-    return None if is_number(period) and period > 0 else (AB, (), Ended(False, cause="error"), store)  # type: ignore[operator]
+    if is_number(period) and period > 0:  # type: ignore[operator]  # a number
+        return None
+    return AB, (), Ended(False, cause="error"), store
 
 
 # ------------------------------------------------------------------------------------------------------ guards

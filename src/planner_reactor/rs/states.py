@@ -20,7 +20,7 @@ names that it uses, so that equal states are equal values.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 from functools import lru_cache
 from typing import Any, ClassVar, Generic, Literal, TypeAlias, TypeVar
@@ -78,8 +78,7 @@ class Reaction(msgspec.Struct, frozen=True, cache_hash=True):
 class Ended:
     """`ok.r` or `ab.r`. The cause is for traces and perceptions; the algebra sees only the outcome."""
 
-    at_rest: ClassVar[bool] = False
-    waits: ClassVar[tuple[Wait, ...]] = ()
+    waits: ClassVar[None] = None
 
     ok: bool
     bindings: Bindings = ()
@@ -89,8 +88,7 @@ class Ended:
 class Delivered(msgspec.Struct, frozen=True):
     """A SIT that has just delivered an instance: what follows it, if anything, is the instance's body."""
 
-    at_rest: ClassVar[bool] = False
-    waits: ClassVar[tuple[Wait, ...]] = ()
+    waits: ClassVar[None] = None
 
     situation: str
     instance: InstanceNumber
@@ -105,7 +103,6 @@ class Leaf(msgspec.Struct, frozen=True, cache_hash=True):
     arguments have no value.
     """
 
-    at_rest: ClassVar[bool] = True
     waits: ClassVar[tuple[Wait, ...]] = ()
 
     name: str
@@ -118,9 +115,7 @@ class Leaf(msgspec.Struct, frozen=True, cache_hash=True):
 
 
 class _Wait(msgspec.Struct, frozen=True):
-    """What the store ends: by itself it is at rest."""
-
-    at_rest: ClassVar[bool] = True
+    """What the store ends."""
 
     @property
     def waits(self) -> tuple[Wait, ...]:
@@ -153,14 +148,9 @@ class _Composed(msgspec.Struct, frozen=True, dict=True, cache_hash=True):
     """A term with live parts."""
 
     @_Once
-    def at_rest(self) -> bool:
-        """Can nothing in it end within the present step, but for what the store ends? Then settling passes it by."""
-        return all(part.at_rest for part in parts_of(self))  # type: ignore[arg-type]  # each that stands below is a Run
-
-    @_Once
-    def waits(self) -> tuple[Wait, ...]:
-        """What the store may end in it."""
-        return tuple(w for part in parts_of(self) for w in part.waits)  # type: ignore[arg-type]
+    def waits(self) -> tuple[Wait, ...] | None:
+        """What the store may end in it; None if something ends in it whatever the store."""
+        return _waits(parts_of(self))  # type: ignore[arg-type]  # each that stands below is a Run
 
 
 class Chain(_Composed, frozen=True):
@@ -175,8 +165,8 @@ class Keep(_Composed, frozen=True):
     body: Run
 
     @_Once
-    def at_rest(self) -> bool:
-        return bool(self.bindings) and not isinstance(self.body, Keep) and self.body.at_rest
+    def waits(self) -> tuple[Wait, ...] | None:
+        return self.body.waits if self.bindings and not isinstance(self.body, Keep) else None
 
 
 class Export(_Composed, frozen=True):
@@ -186,8 +176,8 @@ class Export(_Composed, frozen=True):
     body: Run
 
     @_Once
-    def at_rest(self) -> bool:
-        return bool(self.renamed or not isinstance(self.body, Export | Keep)) and self.body.at_rest
+    def waits(self) -> tuple[Wait, ...] | None:
+        return self.body.waits if self.renamed or not isinstance(self.body, Export | Keep) else None
 
 
 class Group(_Composed, frozen=True):
@@ -195,10 +185,10 @@ class Group(_Composed, frozen=True):
     parts: tuple[Run, ...]
 
     @_Once
-    def at_rest(self) -> bool:
+    def waits(self) -> tuple[Wait, ...] | None:
         live = [part for part in self.parts if not isinstance(part, Ended)]
         enough = len(self.parts) if self.operator == "#" else 1  # with fewer live parts it is decided, or over
-        return len(live) >= enough and all(part.at_rest for part in live)
+        return _waits(live) if len(live) >= enough else None
 
 
 class Inverted(_Composed, frozen=True):
@@ -238,9 +228,9 @@ class Spawning(_Composed, frozen=True):
     stopped: bool = False
 
     @_Once
-    def at_rest(self) -> bool:
-        waits = self.condition.at_rest or (self.bodies and isinstance(self.condition, Ended) and not self.condition.ok)
-        return bool(waits) and all(body.at_rest for body in self.bodies)
+    def waits(self) -> tuple[Wait, ...] | None:
+        over = bool(self.bodies) and isinstance(self.condition, Ended) and not self.condition.ok
+        return _waits(self.bodies if over else (self.condition, *self.bodies))
 
 
 class Serve(_Composed, frozen=True):
@@ -292,6 +282,15 @@ def parts_of(term: Run) -> tuple[Run, ...]:
     return (term.condition, *term.bodies) if isinstance(term, Spawning) else ()
 
 
+def _waits(parts: Iterable[Run]) -> tuple[Wait, ...] | None:
+    found: tuple[Wait, ...] = ()
+    for part in parts:
+        if (waits := part.waits) is None:
+            return None
+        found += waits
+    return found
+
+
 def with_parts(term: Run, parts: tuple[Run, ...]) -> Run:
     """The same term with other live components."""
     if (field := _LIVE.get(term.__class__)) is not None:
@@ -331,13 +330,14 @@ def spots(
     waiting = [(term, path, guard, owner)]
     while waiting:
         term, path, guard, owner = waiting.pop()
+        while (field := _LIVE.get(term.__class__)) is not None:
+            owner = term.instance if isinstance(term, Serve) else owner
+            term, path = getattr(term, field), (*path, 0)
         if isinstance(term, Leaf | Await | Queued | Waiting):
             yield Spot(root, path, term, guard, owner)
             continue
-        if isinstance(term, Group) and (label := guard_of(term)) is not None:
-            guard = label
-        elif isinstance(term, Serve):
-            owner = term.instance
+        label = guard_of(term)
+        guard = guard if label is None else label
         parts = parts_of(term)
         waiting += [(parts[i], (*path, i), guard, owner) for i in range(len(parts) - 1, -1, -1)]
 
