@@ -18,8 +18,9 @@ from typing import Literal
 
 from planner_reactor.errors import RefusedError
 from planner_reactor.link.messages import Adaptation
-from planner_reactor.reactor.structure import Reaction
-from planner_reactor.rs.terms import STOP, Call, Number, Process, Symbol, cond
+from planner_reactor.link.surgeries import drained, surgery
+from planner_reactor.rs.reactions import Reaction, drain_script
+from planner_reactor.rs.terms import Process
 from planner_reactor.runtime import Executer, Root, Scheduler, Timer
 
 LONGEST = 600.0
@@ -51,21 +52,9 @@ class Transaction:
         return (*changed, *(s for s in self.adaptation.removed if s not in changed))
 
 
-def drained(adaptation: Adaptation) -> tuple[str, ...]:
-    """The situations whose instances must come to an end first, top-down: all but those that did not exist."""
-    fresh = {change.situation for change in adaptation.changes if change.fresh}
-    changed = [change.situation for change in adaptation.changes if not change.fresh]
-    return (*changed, *(s for s in adaptation.removed if s not in changed and s not in fresh))
-
-
 def script(adaptation: Adaptation) -> Process:
     """The adaptation as a process (mode `drain`)."""
-    held = drained(adaptation)
-    steps: list[Process] = [Call("DRAIN", (Symbol(s),)) for s in held]
-    steps += [Call("KILL", (Number(label),)) for label in adaptation.kills]
-    steps += [Call("POST", (Number(label),)) for label in adaptation.adds]
-    steps += [Call("UNINHIBIT", (Symbol(s),)) for s in reversed(held)]
-    return cond(*steps) if steps else STOP
+    return drain_script(surgery(adaptation))
 
 
 class Transactions:

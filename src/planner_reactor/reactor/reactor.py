@@ -16,7 +16,8 @@ from typing import Any
 from planner_reactor.errors import RefusedError
 from planner_reactor.link.channels import PerceptionChannel
 from planner_reactor.link.messages import Adaptation, PerceptionKind
-from planner_reactor.reactor.adaptation import Transaction, Transactions, drained, refuse_unsafe_kills
+from planner_reactor.link.surgeries import drained
+from planner_reactor.reactor.adaptation import Transaction, Transactions, refuse_unsafe_kills
 from planner_reactor.reactor.admission import Standing, examine
 from planner_reactor.reactor.built_ins import BuiltIns
 from planner_reactor.reactor.laws import Laws

@@ -1,0 +1,132 @@
+"""The shape of a reactor, read off its text: which reaction serves which situation, and what it asserts (R §5.4).
+
+The reactor, its analysis and its planner read it here. A reaction is a clause `P[n] = …`; its situation is that of the
+SIT in front of its loop (None for a root reaction or a monitor). The situations and what their reactions assert form
+the hierarchy of R Figs 8 to 10, an acyclic digraph. A `Surgery` is a change of it, and the scripts that do it are here
+too, so that what is verified is what is run.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+
+import msgspec
+
+from planner_reactor.rs.terms import STOP, Call, Loop, Number, Process, Schema, Spawn, Symbol, Text, calls, cond
+
+REACTION = "P"
+"""The schema of which every reaction is a clause."""
+
+
+class Reaction(msgspec.Struct, frozen=True):
+    """One clause `P[label]`."""
+
+    label: int
+    schema: Schema
+    situation: str | None
+    asserts: tuple[str, ...]
+    stubs: bool
+    monitors: tuple[str, ...]
+
+    @property
+    def spawns(self) -> bool:
+        """Are all instances of its situation served at once (`::`)?"""
+        return isinstance(self.schema.body, Spawn)
+
+
+def reaction_of(schema: Schema) -> Reaction | None:
+    """The reaction that a clause describes, or None if it is not of the form `P[n] = …`."""
+    match schema:
+        case Schema(name=name, head=(Number(int() as label),)) if name == REACTION:
+            body = schema.body
+            return Reaction(
+                label,
+                schema,
+                served_by(body),
+                tuple(_named(body, "ASSERT", "REASSERT")),
+                any(True for _ in _named(body, "STUB")),
+                tuple(_named(body, "ASSUMONITOR", "HOLDMONITOR")),
+            )
+        case _:
+            return None
+
+
+class Surgery(msgspec.Struct, frozen=True, kw_only=True):
+    """What an adaptation does to a reactor's structure: reactions come and go, these situations are held meanwhile.
+
+    `held` is top-down, `kills` top-down, `adds` bottom-up. `named` are the situations that it changes, held or new.
+    """
+
+    held: tuple[str, ...] = ()
+    kills: tuple[int, ...] = ()
+    adds: tuple[int, ...] = ()
+    named: tuple[str, ...] = ()
+
+
+def drain_script(surgery: Surgery) -> Process:
+    """Safe adaptation as a process: `DRAIN[top] : … : KILL[old] : … : POST[new] : … : UNINHIBIT[top]`."""
+    return _script([Call("DRAIN", (Symbol(s),)) for s in surgery.held], surgery, surgery.held)
+
+
+def wait_script(surgery: Surgery) -> Process:
+    """The papers' (R §5.5): WAITINHIBIT on the highest situation whose reactions change."""
+    return _script([Call("WAITINHIBIT", (Symbol(s),)) for s in surgery.held[:1]], surgery, surgery.held[:1])
+
+
+def _script(hold: list[Process], surgery: Surgery, held: tuple[str, ...]) -> Process:
+    steps = [*hold, *(Call("KILL", (Number(n),)) for n in surgery.kills)]
+    steps += [Call("POST", (Number(n),)) for n in surgery.adds]
+    steps += [Call("UNINHIBIT", (Symbol(s),)) for s in reversed(held)]
+    return cond(*steps) if steps else STOP
+
+
+def served_by(process: Process) -> str | None:
+    """The situation whose instances this process serves."""
+    match process:
+        case Loop(Call("SIT", (Symbol(name) | Text(name), *_)), _):
+            return name
+        case Spawn(Call("SIT", (Symbol(name) | Text(name), *_)), _):
+            return name
+        case _:
+            return None
+
+
+def _named(process: Process, *names: str) -> Iterator[str]:
+    """The first arguments of the calls with these names, each once, left to right."""
+    seen: set[str] = set()
+    for call in calls(process):
+        if call.name in names and call.arguments and isinstance(call.arguments[0], Symbol | Text):
+            first = call.arguments[0]
+            name = first.name if isinstance(first, Symbol) else first.value
+            if name not in seen:
+                seen.add(name)
+                yield name
+
+
+def children(reactions: Iterable[Reaction]) -> dict[str, tuple[str, ...]]:
+    """Situation → the situations that its reactions assert."""
+    found: dict[str, tuple[str, ...]] = {}
+    for reaction in reactions:
+        if reaction.situation is not None:
+            found[reaction.situation] = (*found.get(reaction.situation, ()), *reaction.asserts)
+    return found
+
+
+def cycle(below: Mapping[str, tuple[str, ...]]) -> tuple[str, ...] | None:
+    """A situation that is asserted from below itself, with the way round, or None."""
+    done: set[str] = set()
+    for start in below:
+        stack, trail = [(start, iter(below.get(start, ())))], [start]
+        while stack:
+            name, rest = stack[-1]
+            child = next(rest, None)
+            if child is None:
+                stack.pop()
+                trail.pop()
+                done.add(name)
+            elif child in trail:
+                return (*trail[trail.index(child) :], child)
+            elif child not in done:
+                stack.append((child, iter(below.get(child, ()))))
+                trail.append(child)
+    return None
