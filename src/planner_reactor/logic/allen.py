@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from itertools import combinations
+from operator import or_
 from types import MappingProxyType
 
 from planner_reactor.errors import nearest
@@ -115,31 +116,52 @@ def derive_composition() -> tuple[tuple[int, ...], ...]:
 
 def inverse(relation: int) -> int:
     """What holds from B to A when `relation` holds from A to B."""
-    return _INVERSE[relation]
+    return INVERSE[relation]
 
 
 def compose(first: int, second: int) -> int:
     """What is possible from A to C when `first` holds from A to B and `second` from B to C."""
-    key = first << 13 | second
-    found = _composed.get(key)
-    if found is None:
-        found = _composed[key] = _compose(first, second)
+    low, high = ROWS[first & LOW]
+    more_low, more_high = ROWS[first & HIGH]
+    return low[second & LOW] | high[second >> SHIFT] | more_low[second & LOW] | more_high[second >> SHIFT]
+
+
+SHIFT = 7
+LOW = (1 << SHIFT) - 1
+HIGH = ALL & ~LOW
+"""A set is cut into two halves, so that 192 rows of 192 entries compose all pairs of the 8192 sets."""
+
+
+class _Rows(dict[int, tuple[list[int], list[int]]]):
+    """For a half set r: its composition with each low half and with each high half; made when asked for.
+
+    `compose(r, s)` is the union over the halves of r and of s. Composition distributes over union, so a row is the
+    union of the rows of its base relations.
+    """
+
+    def __missing__(self, half: int) -> tuple[list[int], list[int]]:
+        lowest = half & -half
+        if half == NONE:
+            row = [NONE] * (1 << SHIFT), [NONE] * (1 << len(BASES) - SHIFT)
+        elif half == lowest:
+            possible = COMPOSITION[half.bit_length() - 1]
+            row = _unions(possible[:SHIFT]), _unions(possible[SHIFT:])
+        else:
+            (a, b), (c, d) = self[lowest], self[half ^ lowest]
+            row = list(map(or_, a, c)), list(map(or_, b, d))
+        self[half] = row
+        return row
+
+
+def _unions(sets: Iterable[int]) -> list[int]:
+    """The union of every selection of these sets, at the number whose bits select them."""
+    found = [NONE]
+    for one in sets:
+        found += [union | one for union in found]
     return found
 
 
-def _compose(first: int, second: int) -> int:
-    if first == ALL or second == ALL:
-        return ALL if first and second else NONE
-    found = NONE
-    for r, row in enumerate(COMPOSITION):
-        if first >> r & 1:
-            for s, possible in enumerate(row):
-                if second >> s & 1:
-                    found |= possible
-    return found
-
-
-_composed: dict[int, int] = {}
+ROWS = _Rows()
 
 
 def _inverses() -> list[int]:
@@ -148,4 +170,5 @@ def _inverses() -> list[int]:
     return [(relation & even & 0xFFF) << 1 | (relation & odd) >> 1 | relation & BIT["e"] for relation in range(ALL + 1)]
 
 
-_INVERSE = _inverses()
+INVERSE = _inverses()
+"""`inverse` as a list."""

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Hashable, Iterable, Iterator
 
-from planner_reactor.logic.allen import ALL, BIT, NONE, compose, inverse
+from planner_reactor.logic.allen import ALL, BIT, HIGH, INVERSE, LOW, NONE, ROWS, SHIFT
 
 Interval = Hashable
 """The name of an interval."""
@@ -86,7 +86,7 @@ class Network:
                 del self._edges[first][second], self._edges[second][first]
             else:
                 self._edges[first][second] = relation
-                self._edges[second][first] = inverse(relation)
+                self._edges[second][first] = INVERSE[relation]
         self.consistent = True
 
     def copy(self) -> Network:
@@ -100,24 +100,31 @@ class Network:
         row = self._edges[first]
         self._trail.append((first, second, row.get(second, ALL)))
         row[second] = relation
-        self._edges[second][first] = inverse(relation)
+        self._edges[second][first] = INVERSE[relation]
         return relation != NONE
 
     def _propagate(self, first: Interval, second: Interval) -> bool:
-        """Narrow x - z by x - y - z for every pair x - y that has changed, until nothing changes."""
+        """Narrow x - z by x - y - z for every pair x - y that has changed, until nothing changes.
+
+        The body of `compose` stands here once more: this is the loop in which a planner's logic spends its time.
+        """
+        edges = self._edges
         waiting = {(first, second): None}  # used as an ordered set
         while waiting:
             a, b = next(iter(waiting))
             del waiting[a, b]
             for x, y in ((a, b), (b, a)):
-                row, beyond = self._edges[x], self._edges[y]
+                row = edges[x]
                 xy = row[y]
-                for z, yz in beyond.items():
-                    known = row.get(z, ALL)
-                    narrowed = known & compose(xy, yz)
-                    if narrowed != known and z != x:
-                        if not self._set(x, z, narrowed):
-                            return False
-                        if (z, x) not in waiting:
-                            waiting[x, z] = None
+                (low, high), (more_low, more_high) = ROWS[xy & LOW], ROWS[xy & HIGH]
+                for z, yz in edges[y].items():
+                    i, j = yz & LOW, yz >> SHIFT
+                    via = low[i] | high[j] | more_low[i] | more_high[j]
+                    if via != ALL and z != x:
+                        known = row.get(z, ALL)
+                        if known & ~via:
+                            if not self._set(x, z, known & via):
+                                return False
+                            if (z, x) not in waiting:
+                                waiting[x, z] = None
         return True
