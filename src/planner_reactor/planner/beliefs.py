@@ -8,6 +8,7 @@ missed. Immutable: the planner makes new ones when it relaxes, reinstates or lea
 from __future__ import annotations
 
 from collections.abc import Iterable
+from functools import lru_cache
 
 import msgspec
 from msgspec.structs import replace
@@ -96,6 +97,7 @@ def in_doubt(name: str, relaxed: frozenset[str]) -> bool:
     return not bracket and any(other.startswith(f"{name}(") for other in relaxed)
 
 
+@lru_cache
 def told_apart(relaxed: frozenset[str]) -> frozenset[str]:
     """The constants for which alone some assumption is relaxed."""
     return frozenset(c for name in relaxed if "(" in name for c in name.partition("(")[2][:-1].split(","))

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+from planner_reactor.planner.memory import Key
 from planner_reactor.planner.model import Drafted, Segment
 from planner_reactor.planner.situations import Refinement, Situation
+from planner_reactor.planner.thinking import Work
 
 
 @dataclass(slots=True)
@@ -24,6 +26,8 @@ class Draft:
     avoided: dict[Situation, frozenset[str]] = field(default_factory=dict)
     settled: set[Situation] = field(default_factory=set)
     left: set[Situation] = field(default_factory=set)
+    thought: tuple[Key, Work[Refinement]] | None = None  # what is being worked out
+    laborious: bool = False  # so much that issuing is a step of its own
 
     def __post_init__(self) -> None:
         if self.segment.avoided:

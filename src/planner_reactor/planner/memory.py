@@ -8,14 +8,15 @@ exchanged.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import TypeAlias
 
-from planner_reactor.logic.formulas import Term
+from planner_reactor.logic.formulas import Atom, Term
 from planner_reactor.planner.beliefs import Beliefs, told_apart
 from planner_reactor.planner.situations import Context, Refinement, Situation
 from planner_reactor.planner.theory import Theory
 
+Key: TypeAlias = "tuple[str, tuple[object, ...], tuple[int, ...], Context, frozenset[tuple[Atom, bool]]]"
 MOST = 20_000
 """So many refinements are kept; then all are forgotten."""
 
@@ -26,32 +27,34 @@ class Memory:
 
     theory: Theory
     worked_out: int = 0
-    _known: dict[object, list[Refinement]] = field(default_factory=dict)
+    _known: dict[Key, list[Refinement]] = field(default_factory=dict)
     _count: int = 0
 
-    def recall(
-        self, situation: Situation, context: Context, beliefs: Beliefs, work_out: Callable[[], Refinement]
-    ) -> Refinement:
-        """The refinement, from memory or worked out now."""
+    def key(self, situation: Situation, context: Context, beliefs: Beliefs) -> Key:
+        """What situations have in common whose refinements are alike."""
         apart = told_apart(beliefs.relaxed)
-        kinds = tuple(a if a in apart else self._kind(a) for a in situation.arguments)
-        same = tuple(situation.arguments.index(a) for a in situation.arguments)
-        key = (situation.schema, kinds, same, context, beliefs.told)
+        kinds = tuple([a if a in apart else self._kind(a) for a in situation.arguments])
+        same = tuple([situation.arguments.index(a) for a in situation.arguments])
+        return situation.schema, kinds, same, context, beliefs.told
+
+    def recall(self, key: Key, situation: Situation, beliefs: Beliefs) -> Refinement | None:
+        """The refinement, if it was worked out before."""
         for known in self._known.get(key, ()):
             if known.serves(beliefs.relaxed):
                 return self._moved(known, situation)
+        return None
+
+    def keep(self, key: Key, found: Refinement) -> None:
+        """Remember what was worked out."""
         self.worked_out += 1
-        found = work_out()
         self._count += 1
         if self._count > MOST:
             self._known.clear()
             self._count = 1
         self._known.setdefault(key, []).append(found)
-        return found
 
     def _kind(self, argument: Term | None) -> object:
-        kind = self.theory.alike.get(argument) if isinstance(argument, str) else None
-        return ("kind", kind) if kind is not None else argument
+        return self.theory.alike.get(argument, argument) if isinstance(argument, str) else argument
 
     def _moved(self, known: Refinement, situation: Situation) -> Refinement:
         """The refinement with the constants of this situation and its own exchanged."""

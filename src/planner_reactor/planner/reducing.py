@@ -23,11 +23,15 @@ from planner_reactor.planner.goals import root_schema
 from planner_reactor.planner.issuing import MOST_REFUSALS, Issuer, UnderWay
 from planner_reactor.planner.memory import Memory
 from planner_reactor.planner.model import Model, Segment
-from planner_reactor.planner.refinement import refine
+from planner_reactor.planner.refinement import refining
 from planner_reactor.planner.relaxing import Assuming
 from planner_reactor.planner.situations import Context, Refinement, Situation
 from planner_reactor.planner.steps import Step, StepKind
 from planner_reactor.planner.theory import Theory
+from planner_reactor.planner.thinking import advance
+
+UNITS = 24
+"""So much work is done in one step (see `thinking`)."""
 
 
 @dataclass(slots=True)
@@ -101,16 +105,21 @@ class Reducer:
         return f"{verb} {about.assumption}: {segment.name}", about.assumption
 
     def _work_on(self, draft: Draft) -> Step:
-        situation = draft.waiting.pop(0) if draft.waiting else draft.segment.situation
+        situation = draft.waiting[0] if draft.waiting else draft.segment.situation
         if situation not in draft.refinements:
             refinement = self._refine(situation, draft)
+            if refinement is None:
+                draft.laborious = True
+                return self._step("refine", draft)
             if refinement.composition is None:
                 if not draft.fail(situation):
                     self._give_up(draft.segment, refinement)
                 return self._step("refine", draft)
             draft.drafted.add(refinement)
-            draft.waiting = [*self._to_refine(draft, refinement), *draft.waiting]
-        return self._step("refine", draft) if draft.waiting else self._finish(draft)
+            draft.waiting = [*self._to_refine(draft, refinement), *draft.waiting[1:]]
+            if draft.waiting or draft.laborious:
+                return self._step("refine", draft)
+        return self._finish(draft)
 
     def _to_refine(self, draft: Draft, refinement: Refinement) -> list[Situation]:
         """Which new sub-situations must be concrete at once."""
@@ -169,13 +178,22 @@ class Reducer:
 
     # ----------------------------------------------------------------------------------------- refinement
 
-    def _refine(self, situation: Situation, draft: Draft) -> Refinement:
-        theory, beliefs, fold = self.theory, self.assuming.beliefs, self.issuer.fold
-        schema = self._root if situation == self.model.root else theory.domain.schemas[situation.schema]
-        context = self._context(situation, draft)
-        return self.memory.recall(
-            situation, context, beliefs, lambda: refine(theory, beliefs, schema, situation, context, fold=fold)
-        )
+    def _refine(self, situation: Situation, draft: Draft) -> Refinement | None:
+        """The refinement, from memory or worked out now; None if that takes more than this step."""
+        if draft.thought is None:
+            context, beliefs = self._context(situation, draft), self.assuming.beliefs
+            key = self.memory.key(situation, context, beliefs)
+            known = self.memory.recall(key, situation, beliefs)
+            if known is not None:
+                return known
+            schema = self._root if situation == self.model.root else self.theory.domain.schemas[situation.schema]
+            draft.thought = key, refining(self.theory, beliefs, schema, situation, context, fold=self.issuer.fold)
+        key, work = draft.thought
+        found = advance(work, UNITS)
+        if found is not None:
+            draft.thought = None
+            self.memory.keep(key, found)
+        return found
 
     def _context(self, situation: Situation, draft: Draft) -> Context:
         if situation == draft.segment.situation:

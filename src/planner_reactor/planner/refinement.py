@@ -9,7 +9,7 @@ always give the same refinement, so that planning in increments and planning ane
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from msgspec.structs import replace
@@ -23,6 +23,7 @@ from planner_reactor.planner.search import Search
 from planner_reactor.planner.situations import Child, Composition, Context, Refinement, Situation, situation_of
 from planner_reactor.planner.structure import Action, Tree, action_of, arrange, needed_before
 from planner_reactor.planner.theory import Theory
+from planner_reactor.planner.thinking import Work, finish
 from planner_reactor.planner.threats import Threats
 
 NESTED_TESTS = 3
@@ -35,6 +36,13 @@ def refine(
     """The refinement of a situation of this abstract action. Without `fold` sub-situations keep their
     constants.
     """
+    return finish(refining(theory, beliefs, schema, situation, context, fold=fold))
+
+
+def refining(
+    theory: Theory, beliefs: Beliefs, schema: ActionSchema, situation: Situation, context: Context, *, fold: bool
+) -> Work[Refinement]:
+    """The same as work that can be interrupted."""
     return _Refining(theory, beliefs, schema, situation, context, fold).run()
 
 
@@ -56,9 +64,9 @@ class _Refining:
     warnings: list[str] = field(default_factory=list)
     numbered: int = 0  # steps of all plans so far
 
-    def run(self) -> Refinement:
+    def run(self) -> Work[Refinement]:
         problem = self._problem()
-        tree = self._solve(problem, NESTED_TESTS)
+        tree = yield from self._solve(problem, NESTED_TESTS)
         composition = None
         if tree is not None:
             composition = Composition(tree, tuple(self.outputs), tuple(self.cleanup), frozenset(self.upsets))
@@ -118,8 +126,8 @@ class _Refining:
 
     # --------------------------------------------------------------------------------------- its plan
 
-    def _solve(self, problem: Problem, depth: int) -> Tree | None:
-        plan = Search(problem, Plan(first=self.numbered), self.consulted).solve()
+    def _solve(self, problem: Problem, depth: int) -> Work[Tree | None]:
+        plan = yield from Search(problem, Plan(first=self.numbered), self.consulted).solve()
         if plan is None:
             return None
         self.numbered += len(plan.steps)
@@ -128,11 +136,13 @@ class _Refining:
         otherwise: dict[int, Tree] = {}
         for step in plan.steps:
             if step.schema.otherwise and depth:
-                tree = self._solve(_after_failure(problem, plan, step), depth - 1)
+                tree = yield from self._solve(_after_failure(problem, plan, step), depth - 1)
                 if tree is not None:
                     otherwise[step.number] = tree
+        after = _After(plan, otherwise)
         for step in plan.steps:
-            self._look_after(problem, plan, step, otherwise)
+            yield
+            self._look_after(problem, after, step)
         return arrange(plan, otherwise)
 
     def _count(self, problem: Problem, plan: Plan) -> None:
@@ -163,28 +173,22 @@ class _Refining:
             for step in plan.steps
         )
 
-    def _look_after(self, problem: Problem, plan: Plan, step: Step, otherwise: dict[int, Tree]) -> None:
+    def _look_after(self, problem: Problem, after: _After, step: Step) -> None:
         """What one step means for others: a sub-situation, a cleanup, a test that may fail for ever."""
         if step.schema.abstract:
-            self._add_child(plan, step, otherwise)
-        self._add_cleanup(problem, plan, step)
-        if step.schema.senses and step.number not in otherwise and not _has_achiever(plan, step):
+            self._add_child(after, step)
+        self._add_cleanup(problem, after.plan, step)
+        if step.schema.senses and step.number not in after.otherwise and not after.has_achiever(step):
             self.warnings.append(
                 f"{step.schema.name} in {self.situation.schema}: nothing there can change what it tests, "
                 f"so that it may fail for ever"
             )
 
-    def _add_child(self, plan: Plan, step: Step, otherwise: dict[int, Tree]) -> None:
-        action = action_of(plan, step.number)
-        lost = {link.condition for link in plan.links if link.consumer == step.number and link.lost}
-        granted = tuple(n not in lost for n in range(len(step.schema.executability)))
-        fails = any(
-            not other.schema.abstract
-            and other.number != step.number
-            and other.number not in otherwise
-            and not plan.is_before(other.number, step.number)
-            for other in plan.steps
-        )
+    def _add_child(self, after: _After, step: Step) -> None:
+        action = action_of(after.plan, step.number)
+        lost = {link.condition for link in after.links_to(step) if link.lost}
+        granted = tuple([n not in lost for n in range(len(step.schema.executability))])
+        fails = any(not after.plan.is_before(other, step.number) for other in after.may_fail)
         again = self.context.replayed
         same = frozenset(
             n
@@ -230,6 +234,25 @@ class _Refining:
         return plan.arguments(cleaning)
 
 
+class _After:
+    """A finished plan: what supports each step, and which basic steps may fail without a branch for it."""
+
+    def __init__(self, plan: Plan, otherwise: Mapping[int, Tree]) -> None:
+        self.plan = plan
+        self.otherwise = otherwise
+        self.may_fail = [s.number for s in plan.steps if not s.schema.abstract and s.number not in otherwise]
+        self._links: dict[int, list[Link]] = {}
+        for link in plan.links:
+            self._links.setdefault(link.consumer, []).append(link)
+
+    def links_to(self, step: Step) -> Sequence[Link]:
+        return self._links.get(step.number, ())
+
+    def has_achiever(self, test: Step) -> bool:
+        """Does something that the test looks at come from another step, so that a retry may change it?"""
+        return not test.schema.executability or any(link.producer not in (START, END) for link in self.links_to(test))
+
+
 def _after_failure(problem: Problem, plan: Plan, test: Step) -> Problem:
     """What is to be planned if the test aborts: the same goals, from what holds then."""
     threats = Threats(problem, plan)
@@ -246,10 +269,3 @@ def _after_failure(problem: Problem, plan: Plan, test: Step) -> Problem:
     named = [t for t in truths if not list(variables((t.atom,)))]
     barred = problem.barred | {(test.schema.name, plan.arguments(test))}
     return replace(problem, truths=tuple(dict.fromkeys(named)), barred=barred)
-
-
-def _has_achiever(plan: Plan, test: Step) -> bool:
-    """Does something that the test looks at come from another step, so that a retry may change it?"""
-    return not test.schema.executability or any(
-        link.consumer == test.number and link.producer not in (START, END) for link in plan.links
-    )

@@ -21,6 +21,7 @@ from planner_reactor.planner.reach import NEVER, Reach
 from planner_reactor.planner.repetition import Part, pattern, repeat
 from planner_reactor.planner.supports import Supports, Way
 from planner_reactor.planner.theory import DEEPEST
+from planner_reactor.planner.thinking import Work
 from planner_reactor.planner.threats import Threats
 
 NODES = 4_000
@@ -53,28 +54,29 @@ class Search:
         self._threats = Threats(self.problem, self.plan)
         self._reach = Reach(self.problem, self.consulted)
 
-    def solve(self) -> Plan | None:
+    def solve(self) -> Work[Plan | None]:
         """The plan, or None if there is none (or none was found within `NODES` choices)."""
         goals = [Goal(atom, NAMED["equal"], END, n) for n, atom in enumerate(self.problem.goals)]
-        return self.plan if self._deepen(goals) and self._threats.resolve() else None
+        found = yield from self._deepen(goals)
+        return self.plan if found and self._threats.resolve() else None
 
     # ------------------------------------------------------------------------------- control of the search
 
-    def _deepen(self, goals: list[Goal]) -> bool:
+    def _deepen(self, goals: list[Goal]) -> Work[bool]:
         """Extend the plan so that the goals hold, trying with ever more steps."""
         agenda = _chained(goals, None)
         steps = self._least(goals)
         outer = self._cheapest
         while steps < NEVER and self.nodes < NODES:
             self._cheapest = NEVER
-            if self._depth_first(agenda, steps):
+            if (yield from self._depth_first(agenda, steps)):
                 self._cheapest = outer
                 return True
             steps = self._cheapest
         self._cheapest = outer
         return False
 
-    def _depth_first(self, agenda: Agenda, allowed: int) -> bool:
+    def _depth_first(self, agenda: Agenda, allowed: int) -> Work[bool]:
         plan = self.plan
         links, steps = len(plan.links), len(plan.steps)
         stack: list[_Choice] = []
@@ -88,7 +90,7 @@ class Search:
             while stack:
                 mark, rest, ways = stack[-1]
                 plan.undo(mark)
-                found, agenda = self._next(rest, ways, steps, allowed)
+                found, agenda = yield from self._next(rest, ways, steps, allowed)
                 if found:
                     break
                 stack.pop()
@@ -110,18 +112,19 @@ class Search:
 
         return affords
 
-    def _next(self, rest: Agenda, ways: Iterator[Way], steps: int, allowed: int) -> tuple[bool, Agenda]:
+    def _next(self, rest: Agenda, ways: Iterator[Way], steps: int, allowed: int) -> Work[tuple[bool, Agenda]]:
         """What is to be done after the next way that is possible and not too dear."""
         plan = self.plan
         mark = plan.mark()
         for way in ways:
+            yield
             self.nodes += 1
             if self.nodes > NODES:
                 self.consulted.gave_up = True
                 break
             added = way()
             if added is not None:
-                least, agenda = self._apart(added, rest, steps + allowed)
+                least, agenda = yield from self._apart(added, rest, steps + allowed)
                 needed = len(plan.steps) - steps + max(least, self._least(_goals(agenda)))
                 if needed <= allowed:
                     return True, agenda
@@ -129,7 +132,7 @@ class Search:
             plan.undo(mark)
         return False, None
 
-    def _apart(self, added: list[Goal], rest: Agenda, most: int) -> tuple[int, Agenda]:
+    def _apart(self, added: list[Goal], rest: Agenda, most: int) -> Work[tuple[int, Agenda]]:
         """Solve groups of new goals that share no variable at once, if they can be afforded.
 
         The least number of steps that they cost beyond those in the plan, and what remains to be done.
@@ -141,16 +144,17 @@ class Search:
             return 0, _chained(added, rest)
         least = sum(self._least(group) for group in groups)
         if len(self.plan.steps) + least <= most:
-            if not self._solve_groups(groups):
+            if not (yield from self._solve_groups(groups)):
                 return NEVER, rest
             least = 0
         return least, _chained(others, rest)
 
-    def _solve_groups(self, groups: list[list[Goal]]) -> bool:
+    def _solve_groups(self, groups: list[list[Goal]]) -> Work[bool]:
         """Solve one group after the other; groups that are alike are solved once and repeated."""
         plan = self.plan
         solved: dict[object, Part] = {}
         for group in groups:
+            yield
             key = pattern(self.problem.theory, self.problem.beliefs, plan, group)
             mark = plan.mark()
             if key in solved:
@@ -160,7 +164,7 @@ class Search:
             goals = tuple(plan.bindings.ground(goal.atom) for goal in group)
             first, start = len(plan.steps), len(plan.links)
             nodes, self.nodes = self.nodes, 0  # each group has a budget of its own
-            if not self._deepen(group):
+            if not (yield from self._deepen(group)):
                 return False
             self.nodes = nodes
             solved.setdefault(key, Part(goals, first, len(plan.steps), start, len(plan.links)))

@@ -11,11 +11,19 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator
 
+import msgspec
+
 from planner_reactor.logic.domain import ActionSchema, Condition, Domain, Rule
 from planner_reactor.logic.formulas import Atom, variables
 
 DEEPEST = 40
 """How many rules may support each other in a chain."""
+
+
+class Kind(msgspec.Struct, frozen=True):
+    """What interchangeable constants have in common."""
+
+    number: int
 
 
 class Theory:
@@ -132,7 +140,7 @@ def _contributors(domain: Domain) -> dict[str, frozenset[str]]:
     return defaultdict(frozenset, known)
 
 
-def _alike(domain: Domain, groups: Callable[[Rule], tuple[tuple[Condition, ...], ...]]) -> dict[str, object]:
+def _alike(domain: Domain, groups: Callable[[Rule], tuple[tuple[Condition, ...], ...]]) -> dict[str, Kind]:
     """Constant → its kind, for the symbols that stand only in bodies of rules, always in the same company.
 
     Two constants of one kind can change places without changing the domain.
@@ -144,7 +152,11 @@ def _alike(domain: Domain, groups: Callable[[Rule], tuple[tuple[Condition, ...],
             for symbol in dict.fromkeys(_symbols(c.atom for c in group)):
                 if symbol not in special:
                     company.setdefault(symbol, []).append((number, *_in_place_of(symbol, group)))
-    return {symbol: tuple(sorted(places, key=str)) for symbol, places in company.items()}
+    kinds: dict[object, Kind] = {}
+    return {
+        symbol: kinds.setdefault(tuple(sorted(places, key=str)), Kind(len(kinds)))
+        for symbol, places in company.items()
+    }
 
 
 def _in_place_of(symbol: str, group: tuple[Condition, ...]) -> Iterator[object]:
