@@ -63,7 +63,8 @@ class Texts:
     def script(self) -> str:
         kinds = ["DRAIN[s]", "DRAIN[t]", "WAIT[s]", "WAITINHIBIT[t]", "INHIBIT[s]", "UNINHIBIT[s]", "UNINHIBIT[t]",
                  "KILL[1]", "KILL[2]", "KILL[9]", "DISABLE[s, A]", "ENABLE[s, A]", "DISABLE[t, A]", "ENABLE[t, A]",
-                 "Delay[1]", "POST[7]", "ADD<m>", "DRAIN[s] # Delay[2]", "WAIT[t] # Delay[1]"]  # fmt: skip
+                 "Delay[1]", "POST[7]", "ADD<m>", "DRAIN[s] # Delay[2]", "WAIT[t] # Delay[1]",
+                 "RENEW[s]", "RENEW[t]", "RETIRE[1]", "RETIRE[2]", "WAITOLD[s]", "WAITOLD[t]", "POST[1]"]  # fmt: skip
         parts = [self.draw.choice(kinds) for _ in range(self.draw.randint(1, 5))]
         parts = [p.replace("<m>", f"<{self.fresh()}>") for p in parts]
         return self.draw.choice([" ; ", " : "]).join(f"({p})" for p in parts)

@@ -74,11 +74,11 @@ def test_what_was_written_is_recovered(tmp_path: Path) -> None:
 
 def test_an_adaptation_counts_only_once_it_is_decided() -> None:
     begun = fold([Begun(adaptation(1), 0.0)])
-    assert begun.committed == Committed()
+    assert begun.committed == Committed(highest_label=1)
     assert [a.id for a in begun.open] == [1]
     assert after(begun, Decided(1, "applied", 1.0)).committed.versions == {"S1": 1}
     refused = after(begun, Decided(1, "refused", 1.0))
-    assert refused.committed == Committed(taken=Taken(1))
+    assert refused.committed == Committed(taken=Taken(1), highest_label=1)
     assert not refused.open
 
 

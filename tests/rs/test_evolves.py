@@ -366,6 +366,65 @@ def test_kill_waits_for_a_loop_that_senses_inside_a_round() -> None:
     assert run(rounds, "KILL[1]") == STOPS  # in the outermost condition: it only senses
 
 
+ADDING = "ADD<m> :: (E[m] # P[m])"
+TWO_VERSIONS = """
+P[1] = SIT[s]<k> :; (Delay[2] ; UPDATE[s, k, 1] ; SUCCEED[s, k])
+P[2] = SIT[s]<k> :; (Delay[2] ; UPDATE[s, k, 2] ; SUCCEED[s, k])
+"""
+CHANGE = "POST[1] : Delay[1] : RETIRE[1] : RENEW[s] : POST[2]"
+
+
+def test_an_instance_keeps_the_version_with_which_it_was_asserted() -> None:
+    def seen(asserting: str) -> set[object]:
+        return run(ADDING, CHANGE, asserting, program=TWO_VERSIONS)
+
+    assert seen("Delay[0.5] ; ASSERT[s]<x>") == {(True, (("x", 1),))}
+    assert seen("Delay[1.5] ; ASSERT[s]<x>") == {(True, (("x", 2),))}
+    waiting = "(Delay[0.2] ; ASSERT[s]<y>) | (Delay[0.5] ; ASSERT[s]<x>)"  # unserved when the new version comes
+    assert seen(waiting) == {(True, (("x", 1), ("y", 1)))}
+
+
+def test_a_reaction_serves_from_its_version_on_unless_it_is_retired() -> None:
+    late = "Delay[1.5] ; ASSERT[s]<x>"
+    assert run(ADDING, "POST[1] : RENEW[s]", late, program=TWO_VERSIONS) == {(True, (("x", 1),))}
+    assert run(ADDING, "POST[1] : RETIRE[1] : RENEW[s]", late, program=TWO_VERSIONS) == {"runs"}
+    assert run(ADDING, "POST[1] : RETIRE[1]", late, program=TWO_VERSIONS) == {(True, (("x", 1),))}
+    early = "ASSERT[s]<x>"
+    assert run(ADDING, "Delay[1] : RENEW[s] : POST[2]", early, program=TWO_VERSIONS) == {"runs"}
+
+
+def test_retire_of_an_absent_guard_aborts() -> None:
+    assert run("STOP", "RETIRE[9]") == ABORTS
+
+
+def test_a_label_that_is_posted_again_is_not_retired_any_more() -> None:
+    again = "POST[1] : RETIRE[1] : RENEW[s] : KILL[1] : POST[1]"
+    assert run(ADDING, again, "Delay[1] ; ASSERT[s]<x>", program=TWO_VERSIONS) == {(True, (("x", 1),))}
+
+
+def test_waitold_waits_for_older_versions_alone() -> None:
+    serving = "SIT[s]<k> :: (Delay[5] ; SUCCEED[s, k])"
+    asserting = "ASSERT[s] | (Delay[2] ; ASSERT[s])"
+    timed = "Delay[1] ; RENEW[s] ; Delay[2] ; ((WAITOLD[s] ; OUT[p, old]) | (WAIT[s] ; OUT[p, all]))"
+    first = "IN[p]<x> ; Delay[3] ; STOP"
+    assert run(serving, asserting, timed, first) == {(True, (("x", "old"),))}
+    assert run("STOP", "RENEW[s] ; WAITOLD[s]") == STOPS
+
+
+def test_waitold_waits_for_the_versions_before_the_one_it_began_with() -> None:
+    serving = "SIT[s]<k> :: (Delay[5] ; SUCCEED[s, k])"
+    later = "(WAITOLD[s] ; OUT[p, first]) | (Delay[3] ; RENEW[s])"
+    assert run(serving, "ASSERT[s] | (Delay[2] ; ASSERT[s])", f"Delay[1] ; RENEW[s] ; ({later})",
+               "(IN[p]<x> # (Delay[6] ; OUT[p, late])) | Delay[9]") == {(True, (("x", "first"),))}  # fmt: skip
+
+
+def test_renew_gives_up_what_is_on_of_a_disabled_situation() -> None:
+    serving = "SIT[s]<k> :; (Delay[5] : SUCCEED[s, k])"
+    assert run(serving, "Delay[1] ; DISABLE[s, A] ; ENABLE[s, A]", "ASSERT[s]") == STOPS
+    assert run(serving, "Delay[1] ; DISABLE[s, A] ; RENEW[s] ; ENABLE[s, A]", "ASSERT[s]") == ABORTS
+    assert run(serving, "Delay[1] ; RENEW[s]", "ASSERT[s]") == STOPS
+
+
 def test_add_takes_a_posted_label_and_a_label_in_use_is_refused() -> None:
     program = "P[4] = OUT[p, 4]"
     reactor = "ADD<m> :: (E[m] # P[m])"

@@ -49,16 +49,15 @@ class Committed(msgspec.Struct, frozen=True):
     rests_on: Mapping[str, tuple[str, ...]] = msgspec.field(default_factory=dict)
     adopted: tuple[str, ...] = ()
     failed: tuple[str, ...] = ()
-    highest_label: int = 0
+    highest_label: int = -1
     epoch: int = 0
     taken: Taken = Taken()
     halted: bool = False
 
     def begun(self, adaptation: Adaptation) -> Committed:
-        """What it is once this adaptation was admitted: an older planner's are not, from here on (law 7)."""
-        if adaptation.epoch <= self.epoch:
-            return self
-        return replace(self, epoch=adaptation.epoch, taken=Taken())
+        """What it is once this adaptation was admitted: its labels are used, and an older planner's time is over."""
+        used = replace(self, highest_label=max([self.highest_label, *adaptation.adds]))
+        return used if adaptation.epoch <= self.epoch else replace(used, epoch=adaptation.epoch, taken=Taken())
 
     def decided(self, number: int) -> Committed:
         """What it is once an adaptation of its epoch was applied or came to nothing: its id is spent."""
@@ -81,7 +80,6 @@ class Committed(msgspec.Struct, frozen=True):
             versions=versions,
             rests_on=rests_on,
             adopted=tuple(sorted({*self.adopted, *adaptation.adopts} - {*adaptation.drops})),
-            highest_label=max([self.highest_label, *adaptation.adds]),
             taken=self.taken.with_(adaptation.id),
         )
 

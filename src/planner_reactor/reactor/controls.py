@@ -112,6 +112,8 @@ class Controls:
         yield BuiltIn("UPDATE", self._update)
         for name in ("WAIT", "WAITINHIBIT", "DRAIN"):
             yield BuiltIn(name, self._wait(name), self._left_wait, announces=True)
+        yield BuiltIn("WAITOLD", self._wait_old, self._left_wait, announces=True)
+        yield BuiltIn("RENEW", self._renew)
         yield BuiltIn("INHIBIT", self._inhibit)
         yield BuiltIn("UNINHIBIT", self._uninhibit)
         yield BuiltIn("DISABLE", self._disable)
@@ -148,8 +150,16 @@ class Controls:
 
         return begin
 
+    def _wait_old(self, strand: Strand, arguments: tuple[Value, ...]) -> None:
+        self._waits[strand] = str(arguments[0])
+        self._situations.wait_old(str(arguments[0]), strand)
+
+    def _renew(self, strand: Strand, arguments: tuple[Value, ...]) -> Outcome:
+        self._situations.renew(str(arguments[0]))
+        return STOPPED
+
     def granted(self, strand: Strand) -> None:
-        """A WAIT, WAITINHIBIT or DRAIN of this strand has ended."""
+        """A WAIT, WAITINHIBIT, DRAIN or WAITOLD of this strand has ended."""
         self._waits.pop(strand, None)
 
     def _left_wait(self, strand: Strand) -> None:

@@ -34,6 +34,25 @@ class Disk(Protocol):
         """Keep what was found damaged, for people to look at."""
 
 
+class NoDisk:
+    """Nothing is kept: a reactor that begins anew each time it is started."""
+
+    def read(self) -> bytes:
+        return b""
+
+    def append(self, content: bytes) -> None:
+        """Forgotten."""
+
+    def sync(self) -> None:
+        """Nothing to do."""
+
+    def replace(self, content: bytes) -> None:
+        """Forgotten."""
+
+    def set_aside(self, content: bytes) -> None:
+        """Forgotten."""
+
+
 class FileDisk:
     """A journal in a file, with its directory entry made durable as well."""
 

@@ -73,6 +73,7 @@ class Guards:
     def __iter__(self) -> Iterator[BuiltIn | Guard]:
         yield Guard(self)
         yield BuiltIn("KILL", self._kill, self._left_kill)
+        yield BuiltIn("RETIRE", self._retire)
         yield BuiltIn("ADD", self._add, self._adders.remove, resting=True)
         yield BuiltIn("POST", self._post, self._left_post)
 
@@ -123,6 +124,14 @@ class Guards:
         self.over(guarded.strand)
         return STOPPED
 
+    def _retire(self, strand: Strand, arguments: tuple[Value, ...]) -> Outcome:
+        if arguments[0] not in self._by_label:
+            self._notice("absent_guard", label=arguments[0])
+            return ERROR
+        self._situations.retire(arguments[0])
+        self._notice("retired", label=arguments[0])
+        return STOPPED
+
     def _left_kill(self, strand: Strand) -> None:
         guarded = self._killing.pop(strand)
         if strand in guarded.killers:
@@ -149,6 +158,7 @@ class Guards:
         if not self._adders:
             self._posters[strand] = label
             return None
+        self._situations.versions.born(label)
         self._waker.ended(self._adders.popleft(), True, (label,), "")
         return STOPPED
 

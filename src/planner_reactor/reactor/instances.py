@@ -9,6 +9,7 @@ from collections import deque
 from collections.abc import Hashable
 from dataclasses import dataclass, field
 from heapq import heappop, heappush
+from math import inf
 from typing import Any, Literal, TypeAlias
 
 Status: TypeAlias = Literal["on", "ok", "ab"]
@@ -27,6 +28,7 @@ class Instance:
     owner: Instance | None
     awaiter: Strand | None
     again: bool = False  # asserted by a REASSERT
+    version: int = 0
     status: Status = "on"
     values: tuple[object, ...] = ()
     withdrawn: bool = False
@@ -61,9 +63,14 @@ class Served:
     """
 
     fresh: deque[Instance] = field(default_factory=deque)
+    first: int = 0  # the versions that it serves, from this one
+    last: float = inf  # to this one
     again: list[tuple[int, int, Instance]] = field(default_factory=list)
     stamps: dict[int, int] = field(default_factory=dict)
     waiting: deque[Strand] = field(default_factory=deque)
+
+    def serves(self, instance: Instance) -> bool:
+        return self.first <= instance.version <= self.last
 
     def take(self, stamp: int) -> Instance | None:
         """The instance to serve now, stamped; it is not offered again before `give_back`."""
@@ -98,6 +105,7 @@ class Situation:
     drains: list[Hashable] = field(default_factory=list)
     queue: dict[int, QueuedAssert] = field(default_factory=dict)
     waiters: list[tuple[str, Strand, Hashable]] = field(default_factory=list)
+    waiting_old: list[tuple[int, Strand]] = field(default_factory=list)  # for the end of all older versions
     disabled: int = 0
     held_back: int = 0  # drains in progress, and inhibitions that also queue ASSERTs
 

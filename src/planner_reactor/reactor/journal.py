@@ -69,11 +69,18 @@ class Halted(msgspec.Struct, frozen=True, tag="halted"):
     time: float
 
 
+class Started(msgspec.Struct, frozen=True, tag="started"):
+    """A reactor began to act on what this journal says: the next incarnation."""
+
+    time: float
+
+
 class State(msgspec.Struct, frozen=True):
     """What a journal says: the structure, and the adaptations that were begun and not decided."""
 
     committed: Committed = Committed()
     open: tuple[Adaptation, ...] = ()
+    incarnation: int = 0
 
 
 class Snapshot(msgspec.Struct, frozen=True, tag="snapshot"):
@@ -83,7 +90,7 @@ class Snapshot(msgspec.Struct, frozen=True, tag="snapshot"):
     time: float
 
 
-Record: TypeAlias = Begun | Decided | Assumed | Halted | Snapshot
+Record: TypeAlias = Begun | Decided | Assumed | Halted | Started | Snapshot
 
 _encode = msgspec.msgpack.Encoder().encode
 _decode = msgspec.msgpack.Decoder(Record).decode
@@ -128,15 +135,19 @@ class Journal:
             self._disk.replace(content[:valid])
         return recovery
 
-    def write(self, *records: Record) -> None:
-        """Make these durable, all or none in effect; `DiskError` if that cannot be done, and then none counts."""
+    def write(self, *records: Record, sync: bool = True) -> None:
+        """Make these durable, all or none in effect; `DiskError` if that cannot be done, and then none counts.
+
+        Without `sync` they are durable together with the next record that is synced.
+        """
         state, number = self.state, self.records
         for record in records:
             state = after(state, record)
         try:
             if self.trusted and number + len(records) <= RENEW_AFTER:
                 self._disk.append(b"".join(framed(r, number + n) for n, r in enumerate(records, 1)))
-                self._disk.sync()
+                if sync:
+                    self._disk.sync()
                 number += len(records)
             else:
                 self._disk.replace(HEADER + framed(Snapshot(state, records[-1].time), 1))
@@ -226,14 +237,16 @@ def after(state: State, record: Record) -> State:
         case Snapshot(snapshot):
             return snapshot
         case Begun(adaptation):
-            return State(committed.begun(adaptation), (*state.open, adaptation))
+            return replace(state, committed=committed.begun(adaptation), open=(*state.open, adaptation))
         case Decided(number, outcome):
             decided = committed.decided(number)
             for adaptation in state.open:
                 if adaptation.id == number and outcome == "applied":
                     decided = committed.after(adaptation)
-            return State(decided, tuple(a for a in state.open if a.id != number))
+            return replace(state, committed=decided, open=tuple(a for a in state.open if a.id != number))
         case Assumed(assumption, holds):
             return replace(state, committed=committed.told(assumption, holds=holds))
         case Halted(halted):
             return replace(state, committed=replace(committed, halted=halted))
+        case Started():
+            return replace(state, incarnation=state.incarnation + 1)

@@ -23,6 +23,7 @@ from planner_reactor.reactor.instances import (
     Situation,
     Strand,
 )
+from planner_reactor.reactor.versions import Versions
 from planner_reactor.reactor.wakers import Waker
 
 Notice: TypeAlias = Callable[..., None]
@@ -47,6 +48,7 @@ class Situations:
         self._count = 0
         self._tickets = 0
         self._services = 0
+        self.versions = Versions()
         self.spawned: set[str] = set()  # served by `::`: may be asserted from below themselves
 
     def named(self, name: str) -> Situation:
@@ -102,7 +104,8 @@ class Situations:
         self, situation: Situation, arguments: tuple[object, ...], owner: Instance | None, strand: Strand, again: bool
     ) -> None:
         self._count += 1
-        instance = Instance(self._count, situation, arguments, owner, strand, again)
+        version = self.versions.newest(situation.name)
+        instance = Instance(self._count, situation, arguments, owner, strand, again, version)
         situation.instances[instance.number] = self._instances[instance.number] = instance
         self._awaited[strand] = instance
         if owner is not None:
@@ -110,7 +113,8 @@ class Situations:
         self._notice("asserted", situation=situation.name, instance=instance.number, arguments=arguments,
                      owner=owner.number if owner else None)  # fmt: skip
         for served in situation.reactions.values():
-            served.fresh.append(instance)
+            if served.serves(instance):
+                served.fresh.append(instance)
         self._offer(situation)
 
     def _queue(
@@ -151,7 +155,7 @@ class Situations:
         """
         situation = self.named(name)
         if (served := situation.reactions.get(reaction)) is None:
-            served = situation.reactions[reaction] = Served(deque(situation.instances.values()))
+            served = situation.reactions[reaction] = self._serving(situation, reaction[0])
         if situation.blocked:
             return None
         self._services += 1
@@ -161,6 +165,10 @@ class Situations:
             if not opens:
                 served.give_back(instance)
         return instance
+
+    def _serving(self, situation: Situation, label: Hashable) -> Served:
+        first, last = self.versions.served(label, situation.name)
+        return Served(deque(i for i in situation.instances.values() if first <= i.version <= last), first, last)
 
     def waits(self, name: str, reaction: Reaction, strand: Strand) -> None:
         self.named(name).reactions[reaction].waiting.append(strand)
@@ -177,6 +185,7 @@ class Situations:
 
     def forget_guard(self, label: object) -> None:
         """The reaction with this guard is gone: nobody waits at its SIT any more."""
+        self.versions.forget(label)
         for situation in self._by_name.values():
             for reaction in [g for g in situation.reactions if g[0] == label]:
                 del situation.reactions[reaction]
@@ -259,6 +268,8 @@ class Situations:
             self._return(instance)
             if not situation.instances:
                 self._quiescent(situation)
+            if situation.waiting_old:
+                self._older_gone(situation)
             instance = owner
 
     def _return(self, instance: Instance) -> None:
@@ -289,6 +300,34 @@ class Situations:
         if not situation.instances:
             self._quiescent(situation)
 
+    def renew(self, name: str) -> None:
+        """RENEW[s]: the next version begins. Of a disabled situation, what is on is given up: it rests on the old."""
+        self.versions.renew(name)
+        self._notice("renewed", situation=name, version=self.versions.newest(name))
+        if self.named(name).disabled:
+            self._withdraw(self.named(name))
+
+    def wait_old(self, name: str, strand: Strand) -> None:
+        """WAITOLD[s]: until no instance of an older version is left, descendants included."""
+        situation = self.named(name)
+        situation.waiting_old.append((self.versions.newest(name), strand))
+        self._older_gone(situation)
+
+    def _older_gone(self, situation: Situation) -> None:
+        oldest = next(iter(situation.instances.values()), None)
+        granted = [w for w in situation.waiting_old if oldest is None or oldest.version >= w[0]]
+        situation.waiting_old = [w for w in situation.waiting_old if w not in granted]
+        for _, strand in granted:
+            self._waker.ended(strand, True, (), "")
+
+    def retire(self, label: Hashable) -> None:
+        """RETIRE[n]: the reaction serves nothing that is asserted after the next RENEW."""
+        self.versions.retire(label)
+        for situation in self._by_name.values():
+            for reaction, served in situation.reactions.items():
+                if reaction[0] == label:
+                    served.last = self.versions.served(label, situation.name)[1]
+
     def _withdraw(self, situation: Situation) -> None:
         withdrawn = [i for i in situation.instances.values() if i.status == "on"]
         for instance in withdrawn:  # grows while it is read: descendants follow their owners
@@ -315,6 +354,9 @@ class Situations:
     def left_wait(self, name: str, strand: Strand, owner: Hashable) -> None:
         """N9: a WAIT, WAITINHIBIT or DRAIN is aborted; a DRAIN lets its queue go."""
         situation = self.named(name)
+        if any(waiting is strand for _, waiting in situation.waiting_old):
+            situation.waiting_old = [w for w in situation.waiting_old if w[1] is not strand]
+            return
         kind = next(kind for kind, waiting, _ in situation.waiters if waiting is strand)
         situation.waiters = [w for w in situation.waiters if w[1] is not strand]
         if kind == "DRAIN":

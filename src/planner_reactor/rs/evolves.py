@@ -266,13 +266,15 @@ def _spawning(term: Spawning, store: Store, world: World) -> tuple[Run, Store]:
 
 
 def granted(wait: Wait, store: Store) -> bool:
-    """Does the store end this ASSERT, WAIT, WAITINHIBIT or DRAIN now?"""
+    """Does the store end this ASSERT, WAIT, WAITINHIBIT, DRAIN or WAITOLD now?"""
     match wait:
         # an await returns once the instance, its bodies in service and its descendants have ended
         case Await(k):
             return store.complete(k)
         case Queued(ticket):
             return any(q.ticket == ticket and q.fate is not None for q in store.queue)
+        case Waiting("WAITOLD", situation, version):
+            return not store.older(situation, version)
         case Waiting(_, situation):
             return store.quiescent(situation)
 
@@ -319,10 +321,17 @@ def settle(config: Config, world: World) -> Config:
             default=None,
         )
         if undecided is None:
-            return config
+            return _guarded(config) if config.store.born or config.store.retired else config
         _, root, path = undecided
         term, store = decide(config.root(root), path, config.store, root)
         config = Config(tuple((n, term if n == root else t) for n, t in config.roots), store)
+
+
+def _guarded(config: Config) -> Config:
+    """Of reactions whose guard is gone the store knows nothing more."""
+    guards = [spot.leaf for spot in config.spots() if isinstance(spot.leaf, Leaf) and spot.leaf.name == "E"]
+    labels = [label for guard in guards for label in guard.arguments]
+    return replace(config, store=config.store.guarded_by(labels))
 
 
 def _quiet(config: Config, world: World) -> Config:

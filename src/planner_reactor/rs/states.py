@@ -6,7 +6,7 @@
     a leaf          Leaf        a basic or built-in process that has come to life, with its age
     await_{s,k}<x>  Await       an ASSERT (or REASSERT) that waits for its instance
     –               Queued      an ASSERT held back while its situation is drained or disabled
-    –               Waiting     a WAIT, WAITINHIBIT or DRAIN that has begun
+    –               Waiting     a WAIT, WAITINHIBIT, DRAIN or WAITOLD that has begun
     P;Q  P:Q        Chain       the part that runs, and what is still to come
     r>T             Keep        bindings kept for the outside
     [T]_A, [T]_{r→y} Export     only these results leave, under these names
@@ -138,10 +138,11 @@ class Queued(_Wait, frozen=True):
 
 
 class Waiting(_Wait, frozen=True):
-    """A WAIT, WAITINHIBIT or DRAIN that has begun."""
+    """A WAIT, WAITINHIBIT, DRAIN or WAITOLD (for the versions before `version`) that has begun."""
 
     name: str
     situation: str
+    version: int = 0
 
 
 class _Composed(msgspec.Struct, frozen=True, dict=True, cache_hash=True):

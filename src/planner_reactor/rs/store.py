@@ -11,6 +11,7 @@ name)`).
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from typing import Literal, TypeAlias
 
 import msgspec
@@ -37,6 +38,7 @@ class Instance(msgspec.Struct, frozen=True, cache_hash=True):
     stub: bool = False
     awaited: bool = True
     cause: str = ""
+    version: int = 0
 
 
 class Inhibition(msgspec.Struct, frozen=True, cache_hash=True):
@@ -57,6 +59,10 @@ class QueuedAssert(msgspec.Struct, frozen=True, cache_hash=True):
     fate: InstanceNumber | str | None = None
 
 
+Versions: TypeAlias = tuple[tuple[str, int], ...]
+"""The newest version of each situation that was renewed; 0 for the others."""
+
+
 class Store(msgspec.Struct, frozen=True, cache_hash=True):
     instances: tuple[Instance, ...] = ()  # I, oldest first
     inhibitions: tuple[Inhibition, ...] = ()  # H
@@ -64,6 +70,9 @@ class Store(msgspec.Struct, frozen=True, cache_hash=True):
     queue: tuple[QueuedAssert, ...] = ()  # Q, in order
     run: tuple[tuple[InstanceNumber, Reaction], ...] = ()  # bodies in service
     served: tuple[tuple[Reaction, InstanceNumber], ...] = ()  # last served last
+    versions: Versions = ()
+    born: tuple[tuple[Value, Versions], ...] = ()  # label of a reaction, the versions with which it was posted
+    retired: tuple[tuple[Value, Versions], ...] = ()  # and the last that it serves
     next_number: int = 1
     cut: int = 0  # bodies aborted from outside: a safe adaptation leaves it at 0 (law 2)
 
@@ -120,8 +129,24 @@ class Store(msgspec.Struct, frozen=True, cache_hash=True):
             and i.status == "on"
             and not i.withdrawn
             and (i.number, reaction) not in self.run
+            and self.serves(reaction, i)
         ]
         return min(free, key=lambda i: (order.get(i.number, -1), i.number), default=None)
+
+    def version(self, situation: str) -> int:
+        """The version that an instance takes when it is asserted now."""
+        return dict(self.versions).get(situation, 0)
+
+    def serves(self, reaction: Reaction, instance: Instance) -> bool:
+        """Does the reaction serve instances of this version? From the one it was posted with to its last."""
+        posted, last = dict(self.born).get(reaction.guard), dict(self.retired).get(reaction.guard)
+        return (posted is None or dict(posted).get(instance.situation, 0) <= instance.version) and (
+            last is None or instance.version <= dict(last).get(instance.situation, 0)
+        )
+
+    def older(self, situation: str, version: int) -> bool:
+        """Is any instance of an older version left?"""
+        return any(i.situation == situation and i.version < version for i in self.instances)
 
     def above(self, owner: InstanceNumber | None, situation: str) -> bool:
         """Is an instance of this situation the owner, or above it?"""
@@ -148,7 +173,7 @@ class Store(msgspec.Struct, frozen=True, cache_hash=True):
         self, situation: str, arguments: tuple[Value, ...], owner: InstanceNumber | None
     ) -> tuple[Store, InstanceNumber]:
         number = InstanceNumber(self.next_number)
-        new = Instance(number, situation, arguments, owner)
+        new = Instance(number, situation, arguments, owner, version=self.version(situation))
         return replace(self, instances=(*self.instances, new), next_number=self.next_number + 1), number
 
     def queued(
@@ -207,7 +232,11 @@ class Store(msgspec.Struct, frozen=True, cache_hash=True):
 
     def drain(self, situation: str, root: int) -> Store:
         """DRAIN begins: new ASSERTs queue; every on instance and all its descendants are withdrawn."""
-        store = replace(self, drains=(*self.drains, (situation, root)))
+        return replace(self, drains=(*self.drains, (situation, root))).withdrawing(situation)
+
+    def withdrawing(self, situation: str) -> Store:
+        """Every on instance of the situation and all its descendants are withdrawn."""
+        store = self
         doomed = [i.number for i in store.instances if i.situation == situation and i.status == "on"]
         while doomed:
             number = doomed.pop()
@@ -218,6 +247,33 @@ class Store(msgspec.Struct, frozen=True, cache_hash=True):
     def drain_ended(self, situation: str, root: int) -> Store:
         index = self.drains.index((situation, root))
         return replace(self, drains=(*self.drains[:index], *self.drains[index + 1 :]))
+
+    def renewed(self, situation: str) -> Store:
+        """RENEW: the next version begins. Of a disabled situation, what is on is given up: it rests on the old."""
+        versions = {**dict(self.versions), situation: self.version(situation) + 1}
+        store = replace(self, versions=tuple(sorted(versions.items())))
+        return store.withdrawing(situation) if store.disabled(situation) else store
+
+    def posted(self, label: Value) -> Store:
+        """A reaction is added: it serves what is asserted from its versions on."""
+        if not self.versions:
+            return self
+        others = tuple(entry for entry in self.born if entry[0] != label)
+        return replace(self, born=(*others, (label, self.versions)))
+
+    def retire(self, label: Value) -> Store:
+        """A reaction serves nothing that is asserted after the next RENEW."""
+        if any(entry[0] == label for entry in self.retired):
+            return self
+        return replace(self, retired=(*self.retired, (label, self.versions)))
+
+    def guarded_by(self, labels: Collection[Value]) -> Store:
+        """What is known of reactions whose guards are gone is forgotten."""
+        return replace(
+            self,
+            born=tuple(entry for entry in self.born if entry[0] in labels),
+            retired=tuple(entry for entry in self.retired if entry[0] in labels),
+        )
 
     def released(self, situation: str) -> Store:
         """The queue of this situation becomes instances, in order, unless something still holds it back."""
