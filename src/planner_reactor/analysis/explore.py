@@ -111,25 +111,18 @@ def successors(config: Config, world: World) -> Iterator[Step]:
     yield from moves
     if any(move.urgent for move in moves):
         return
-    pause = min((d for d in _boundaries(config, world) if d > 0), default=inf)
+    pause = min((d for d in boundaries(config, world) if d > 0), default=inf)
     if (pause := min(pause, slack(config, world))) < inf:
         yield Step(("TIME", (pause,), "ok", ()), elapsed(config, pause, world))
 
 
-def _boundaries(config: Config, world: World) -> Iterator[float]:
+def boundaries(config: Config, world: World) -> Iterator[float]:
+    """Seconds to each end of an age window, past ones included."""
     for spot in config.spots():
         if isinstance(spot.leaf, Leaf):
             for edge in window(spot.leaf, world):
                 if edge < inf:
                     yield round(edge - spot.leaf.age, 9)
-
-
-def _path(state: Config, came_from: Mapping[Config, tuple[Config, Label] | None]) -> tuple[Label, ...]:
-    labels: list[Label] = []
-    while (step := came_from[state]) is not None:
-        state, label = step
-        labels.append(label)
-    return tuple(reversed(labels))
 
 
 def canonical(config: Config) -> Config:
@@ -138,22 +131,23 @@ def canonical(config: Config) -> Config:
     names |= {q.ticket: InstanceNumber(-n) for n, q in enumerate(config.store.queue, 1)}
     if all(old == new for old, new in names.items()) and config.store.next_number == len(config.store.instances) + 1:
         return config
-    renamed: Config = _renumbered(config, names)
+    renamed: Config = renumbered(config, names)
     return replace(renamed, store=replace(renamed.store, next_number=len(config.store.instances) + 1))
 
 
-def _renumbered(value: Any, names: Mapping[InstanceNumber, InstanceNumber]) -> Any:
+def renumbered(value: Any, names: Mapping[InstanceNumber, InstanceNumber]) -> Any:
+    """The same value with other instance numbers; those without a name become 0."""
     if isinstance(value, InstanceNumber):
         return names.get(value, InstanceNumber(0))
     if isinstance(value, tuple):
-        return tuple(_renumbered(v, names) for v in value)
+        return tuple(renumbered(v, names) for v in value)
     if isinstance(value, Ended):
-        return Ended(value.ok, _renumbered(value.bindings, names), value.cause)
+        return Ended(value.ok, renumbered(value.bindings, names), value.cause)
     if isinstance(value, msgspec.Struct):
         changes = {}
         for name in value.__struct_fields__:
             old = getattr(value, name)
-            if (new := _renumbered(old, names)) is not old and new != old:
+            if (new := renumbered(old, names)) is not old and new != old:
                 changes[name] = new
         return replace(value, **changes) if changes else value
     return value

@@ -1,19 +1,21 @@
 """Labelled transition systems: everything that a program can do, as states and labelled moves between them.
 
-`build` reaches every state of a configuration under `rs.evolves`, breadth first, so that a path is a shortest one.
-States that differ only in the numbers of situation instances are one state. Time passes from one end of an age window
-to the next. A `Transitions` is what reduction, comparison, export and properties stand on.
+`build` reaches every state of a configuration, breadth first, so that a path is a shortest one. States are vectors of
+integers, compiled from `rs.evolves` (`networks`); configurations are made again when one is looked at. States that
+differ only in the numbers of situation instances are one state. Time passes from one end of an age window to the next.
+A `Transitions` is what reduction, comparison, export and properties stand on.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from typing import TypeAlias
+from typing import TypeAlias, overload
 
-from planner_reactor.analysis.explore import canonical, successors
+from planner_reactor.analysis.cells import Entangled
+from planner_reactor.analysis.networks import Network, Vector, networked, whole
 from planner_reactor.errors import BudgetError
 from planner_reactor.rs.configurations import Config, Label, World
-from planner_reactor.rs.states import Bindings, Ended
+from planner_reactor.rs.states import Bindings
 
 LIMIT = 200_000
 """States that are built unless a caller says otherwise."""
@@ -23,23 +25,48 @@ Outcome: TypeAlias = tuple[bool, Bindings] | None
 """How a root has ended: did it stop, with which results; None while it runs."""
 
 
+class Configurations(Sequence[Config]):
+    """The configurations behind vectors of a network, each made when it is asked for."""
+
+    def __init__(self, network: Network, vectors: Sequence[Vector]) -> None:
+        self._network = network
+        self._vectors = vectors
+
+    def __len__(self) -> int:
+        return len(self._vectors)
+
+    @overload
+    def __getitem__(self, index: int) -> Config: ...
+    @overload
+    def __getitem__(self, index: slice) -> Configurations: ...
+    def __getitem__(self, index: int | slice) -> Config | Configurations:
+        if isinstance(index, slice):
+            return Configurations(self._network, self._vectors[index])
+        return self._network.decoded(self._vectors[index])
+
+
 class Transitions:
     """States 0, 1, … in the order of a shortest way to them; 0 is the first.
 
     `moves[i]` are the (label, next state) pairs of state i, `states[i]` is its configuration, `came_from[i]` the state
-    and the label by which it was found.
+    and the label by which it was found. `urgent[i]` has a bit for each move that does not let time pass before it.
     """
 
     complete = True
 
     def __init__(
         self,
-        states: Sequence[Config],
+        network: Network,
+        vectors: Sequence[Vector],
         moves: Sequence[tuple[Move, ...]],
+        urgent: Sequence[int],
         came_from: Sequence[tuple[int, Label] | None],
     ) -> None:
-        self.states = states
+        self.network = network
+        self.vectors = vectors
+        self.states: Sequence[Config] = Configurations(network, vectors)
         self.moves = moves
+        self.urgent = urgent
         self.came_from = came_from
 
     def __len__(self) -> int:
@@ -66,11 +93,11 @@ class Transitions:
     @property
     def deadlocks(self) -> tuple[int, ...]:
         """The states that nothing leaves though a root has not ended."""
-        return tuple(n for n in self.ends if None in self.outcomes(n))
+        return tuple(n for n in self.ends if not self.network.over(self.vectors[n]))
 
     def outcomes(self, state: int) -> tuple[Outcome, ...]:
         """How each root has ended in this state."""
-        return tuple(_outcome(term) for _, term in self.states[state].roots)
+        return tuple(self.network.outcome(self.vectors[state], root) for root, _ in self.network.config.roots)
 
     def path(self, state: int) -> tuple[Label, ...]:
         """The labels of a shortest way from the first state."""
@@ -101,25 +128,32 @@ class Transitions:
         return next((n for n in range(len(self)) if n not in reaching), None)
 
 
-def _outcome(term: object) -> Outcome:
-    return (term.ok, term.bindings) if isinstance(term, Ended) else None
-
-
 def build(config: Config, world: World, *, limit: int = LIMIT) -> Transitions:
     """The transition system of a configuration. Raises `BudgetError` above `limit` states."""
-    states = [canonical(config)]
-    numbers = {states[0]: 0}
+    try:
+        return built(networked(config, world, limit=limit), limit=limit)
+    except Entangled:
+        return built(whole(config, world, limit=limit), limit=limit)
+
+
+def built(network: Network, *, limit: int = LIMIT) -> Transitions:
+    """The transition system of a network. Raises `BudgetError` above `limit` states, or `Entangled`."""
+    vectors = [network.start]
+    numbers = {network.start: 0}
     came_from: list[tuple[int, Label] | None] = [None]
     moves: list[tuple[Move, ...]] = []
-    for here, state in enumerate(states):  # grows while it is read
-        found = []
-        for step in successors(state, world):
-            after = canonical(step.after)
-            if (number := numbers.setdefault(after, len(states))) == len(states):
+    urgent: list[int] = []
+    for here, vector in enumerate(vectors):  # grows while it is read
+        found: list[Move] = []
+        hurries = 0
+        for label, after, in_a_hurry in network.steps(vector):
+            if (number := numbers.setdefault(after, len(vectors))) == len(vectors):
                 if number >= limit:
                     raise BudgetError("states", f"more than {limit} states")
-                states.append(after)
-                came_from.append((here, step.label))
-            found.append((step.label, number))
+                vectors.append(after)
+                came_from.append((here, label))
+            hurries |= in_a_hurry << len(found)
+            found.append((label, number))
         moves.append(tuple(found))
-    return Transitions(states, moves, came_from)
+        urgent.append(hurries)
+    return Transitions(network, vectors, moves, urgent, came_from)
