@@ -97,6 +97,18 @@ def in_doubt(name: str, relaxed: frozenset[str]) -> bool:
     return not bracket and any(other.startswith(f"{name}(") for other in relaxed)
 
 
+@lru_cache(4096)
+def some_in_doubt(names: frozenset[str], relaxed: frozenset[str]) -> bool:
+    """Is any of them relaxed? (Remembered: the same few sets are asked about for every situation.)"""
+    return any(in_doubt(name, relaxed) for name in names)
+
+
+@lru_cache(4096)
+def all_in_doubt(names: frozenset[str], relaxed: frozenset[str]) -> bool:
+    """Are all of them relaxed?"""
+    return all(in_doubt(name, relaxed) for name in names)
+
+
 @lru_cache
 def told_apart(relaxed: frozenset[str]) -> frozenset[str]:
     """The constants for which alone some assumption is relaxed."""

@@ -206,11 +206,15 @@ class Model:
 
 
 def _granted(calls: list[Child]) -> tuple[bool, ...]:
+    if len(calls) == 1:
+        return calls[0].granted
     return tuple(all(granted) for granted in zip(*(call.granted for call in calls), strict=True))
 
 
 def _replayed(calls: list[Child]) -> frozenset[int] | None:
     """Is it asserted again after it succeeded, and which inputs are then the same?"""
+    if len(calls) == 1:
+        return calls[0].replayed
     found: frozenset[int] | None = None
     for n, call in enumerate(calls):
         if call.replayed is not None:

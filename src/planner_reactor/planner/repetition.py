@@ -12,21 +12,49 @@ from collections.abc import Sequence
 import msgspec
 from msgspec.structs import replace
 
+from planner_reactor.logic.allen import ALL
 from planner_reactor.logic.formulas import Atom, Term, variables
 from planner_reactor.planner.beliefs import Beliefs, told_apart
-from planner_reactor.planner.plan import Plan, Result, Step, Unnamed
+from planner_reactor.planner.plan import Link, Plan, Result, Step, Unnamed
 from planner_reactor.planner.problem import Goal
 from planner_reactor.planner.theory import Theory
 
 
 class Part(msgspec.Struct, frozen=True):
-    """The steps, links and goals of a plan that solve one group: `steps[first:last]`, `links[start:stop]`."""
+    """Steps and links of a plan that solve one group of goals, with what their variables stand for.
+
+    `values` are those of the variables of each step, `reached` those of the arguments of each goal; `orders` say
+    how the steps lie to each other and to those before them. `entangled`: a link begins at a step of another
+    part, so that it cannot be repeated.
+    """
 
     goals: tuple[Atom, ...]
+    reached: tuple[tuple[Term, ...], ...]
     first: int
-    last: int
-    start: int
-    stop: int
+    steps: tuple[Step, ...]
+    values: tuple[tuple[Term, ...], ...]
+    links: tuple[Link, ...]
+    orders: tuple[tuple[int, int, int], ...]
+    entangled: bool
+
+
+def part_of(plan: Plan, goals: tuple[Atom, ...], first: int, start: int) -> Part:
+    """The part `steps[first:]`, `links[start:]` of a plan, which solves these goals."""
+    walk, ground = plan.bindings.walk, plan.bindings.ground
+    steps = tuple(plan.steps[first:])
+    own = {step.number for step in steps}
+    numbers = [*own, *(step.number for step in plan.steps[:first])]
+    relation = plan.network.relation
+    return Part(
+        goals,
+        tuple(ground(goal).arguments for goal in goals),
+        first,
+        steps,
+        tuple(tuple([walk(step.offset + v) for v in range(step.schema.size)]) for step in steps),
+        tuple(replace(link, atom=ground(link.atom)) for link in plan.links[start:]),
+        tuple((a, b, r) for a in own for b in numbers if a != b and (r := relation(a, b)) != ALL),
+        any(link.producer >= plan.first and link.producer not in own for link in plan.links[start:]),
+    )
 
 
 def pattern(theory: Theory, beliefs: Beliefs, plan: Plan, goals: Sequence[Goal]) -> object:
@@ -51,43 +79,36 @@ def repeat(plan: Plan, part: Part, goals: Sequence[Goal]) -> bool:
     """Do the part again for these goals, which have the same pattern; False (and nothing done) if it
     is entangled.
     """
-    steps, links = plan.steps[part.first : part.last], plan.links[part.start : part.stop]
-    own = {step.number for step in steps}
-    shift = len(plan.steps) - part.first
-    if any(link.producer >= plan.first and link.producer not in own for link in links):
+    if part.entangled:
         return False
-    mapping = _Mapping(plan, part, own, shift, goals)
-    bound = [[mapping(plan.bindings.walk(s.offset + v)) for v in range(s.schema.size)] for s in steps]
-    for step, values in zip(steps, bound, strict=True):
-        again = Step(step.number + shift, step.schema, plan.fresh(step.schema.size))
+    mapping = _Mapping(plan, part, goals)
+    for step, values in zip(part.steps, part.values, strict=True):
+        again = Step(mapping.step(step.number), step.schema, plan.fresh(step.schema.size))
         for variable, value in enumerate(values):
             if type(value) is not int:
-                plan.bindings.bind(again.offset + variable, value)
+                plan.bindings.bind(again.offset + variable, mapping(value))
         plan.steps.append(again)
         plan.network.add(again.number)
-    for link in links:
-        atom = Atom(link.atom.predicate, tuple(mapping(a) for a in plan.bindings.ground(link.atom).arguments))
+    for link in part.links:
+        atom = Atom(link.atom.predicate, tuple([mapping(a) for a in link.atom.arguments]))
         plan.links.append(
-            replace(link, atom=atom, producer=mapping.step(link.producer), consumer=mapping.step(link.consumer))
-        )
+            Link(
+                atom, mapping.step(link.producer), mapping.step(link.consumer), link.condition,
+                link.throughout, link.maintained, link.derived, link.lost,
+            )
+        )  # fmt: skip
     mapping.bind_goals(goals)
-    others = [step.number for step in plan.steps[: part.first]]
-    return all(
-        plan.order(mapping.step(one), mapping.step(other), plan.network.relation(one, other))
-        for one in own
-        for other in (*own, *others)
-        if one != other
-    )
+    return all(plan.order(mapping.step(one), mapping.step(other), relation) for one, other, relation in part.orders)
 
 
 class _Mapping:
     """From the terms of the part to those of its repetition."""
 
-    def __init__(self, plan: Plan, part: Part, own: set[int], shift: int, goals: Sequence[Goal]) -> None:
+    def __init__(self, plan: Plan, part: Part, goals: Sequence[Goal]) -> None:
         self._plan = plan
         self._part = part
-        self._own = own
-        self._shift = shift
+        self._own = {step.number for step in part.steps}
+        self._shift = len(plan.steps) - part.first
         self._constants: dict[Term, Term] = {}
         for old, goal in zip(part.goals, goals, strict=True):
             for a, b in zip(old.arguments, plan.bindings.ground(goal.atom).arguments, strict=True):
@@ -95,9 +116,9 @@ class _Mapping:
                     self._constants[a] = b
 
     def __call__(self, term: Term) -> Term:
-        if isinstance(term, Result) and term.step in self._own:
+        if type(term) is Result and term.step in self._own:
             return Result(term.step + self._shift, term.number)
-        if isinstance(term, Unnamed) and term.step in self._own:
+        if type(term) is Unnamed and term.step in self._own:
             return Unnamed(term.step + self._shift, term.number)
         return self._constants.get(term, term)
 
@@ -107,8 +128,8 @@ class _Mapping:
     def bind_goals(self, goals: Sequence[Goal]) -> None:
         """The open variables of the goals stand for what those of the part stand for."""
         walk = self._plan.bindings.walk
-        for old, goal in zip(self._part.goals, goals, strict=True):
-            for a, b in zip(old.arguments, goal.atom.arguments, strict=True):
-                value, open_ = self(walk(a)), walk(b)
+        for reached, goal in zip(self._part.reached, goals, strict=True):
+            for value, b in zip(reached, goal.atom.arguments, strict=True):
+                open_ = walk(b)
                 if type(open_) is int and type(value) is not int:
-                    self._plan.bindings.bind(open_, value)
+                    self._plan.bindings.bind(open_, self(value))

@@ -18,7 +18,7 @@ from planner_reactor.logic.formulas import variables
 from planner_reactor.planner.plan import BEFORE, END, Plan, Result, Unnamed
 from planner_reactor.planner.problem import Consulted, Goal, Problem
 from planner_reactor.planner.reach import NEVER, Reach
-from planner_reactor.planner.repetition import Part, pattern, repeat
+from planner_reactor.planner.repetition import Part, part_of, pattern, repeat
 from planner_reactor.planner.supports import Supports, Way
 from planner_reactor.planner.theory import DEEPEST
 from planner_reactor.planner.thinking import Work
@@ -167,7 +167,7 @@ class Search:
             if not (yield from self._deepen(group)):
                 return False
             self.nodes = nodes
-            solved.setdefault(key, Part(goals, first, len(plan.steps), start, len(plan.links)))
+            solved.setdefault(key, part_of(plan, goals, first, start))
         return True
 
     def _is_complete(self, steps: int) -> bool:
@@ -204,20 +204,22 @@ class Search:
 
     def _groups(self, goals: list[Goal]) -> tuple[list[list[Goal]], list[Goal]]:
         """The goals with open variables in groups that share none, and those without open variables."""
-        groups: list[tuple[set[int], list[Goal]]] = []
+        groups: dict[int, list[Goal]] = {}  # by the number of the first goal, in order
+        owner: dict[int, int] = {}  # variable → its group
         others = []
-        for goal in goals:
-            own = set(variables((self.plan.bindings.ground(goal.atom),)))
-            joined = [group for group in groups if group[0] & own]
+        for n, goal in enumerate(goals):
+            own = list(variables((self.plan.bindings.ground(goal.atom),)))
             if not own:
                 others.append(goal)
-            elif not joined:
-                groups.append((own, [goal]))
-            else:
-                joined[0][0].update(own, *(other[0] for other in joined[1:]))
-                joined[0][1].extend([*(g for other in joined[1:] for g in other[1]), goal])
-                groups = [group for group in groups if group not in joined[1:]]
-        return [group for _, group in groups], others
+                continue
+            first, *joined = sorted({owner.get(variable, n) for variable in own})
+            group = groups.setdefault(first, [])
+            for other in joined:
+                group.extend(groups.pop(other, ()))
+                owner.update({variable: first for variable, old in owner.items() if old == other})
+            group.append(goal)
+            owner.update(dict.fromkeys(own, first))
+        return list(groups.values()), others
 
 
 def _is_nameless(term: object) -> bool:

@@ -11,7 +11,7 @@ from collections.abc import Mapping
 import msgspec
 
 from planner_reactor.logic.formulas import Atom, Numeral, Term
-from planner_reactor.planner.beliefs import in_doubt
+from planner_reactor.planner.beliefs import all_in_doubt, some_in_doubt
 from planner_reactor.planner.structure import Action, Tree, first_action, renamed
 
 
@@ -106,8 +106,10 @@ class Refinement(msgspec.Struct, frozen=True):
 
     def serves(self, relaxed: frozenset[str]) -> bool:
         """Would it be the same with these assumptions relaxed?"""
-        return not any(in_doubt(name, relaxed) for name in (*self.required, *self.presumed)) and all(
-            in_doubt(name, relaxed) for name in self.missing
+        return (
+            not some_in_doubt(self.required, relaxed)
+            and not some_in_doubt(self.presumed, relaxed)
+            and all_in_doubt(self.missing, relaxed)
         )
 
     def why_impossible(self, name: str) -> str:
