@@ -71,6 +71,7 @@ def findings(survey: Survey, domain: Domain, *, whole: bool, warnings: bool) -> 
         yield from _never_produced(survey, domain)
     if whole and warnings:
         yield from _never_used(survey, domain)
+        yield from _never_taken(survey, domain)
         yield from _suspicious(survey)
 
 
@@ -118,6 +119,14 @@ def _never_used(survey: Survey, domain: Domain) -> Iterator[Diagnostic]:
         yield survey.source.diagnostic(
             0, "no-goal", "the domain has no goal", "atp_goal states one", severity="warning"
         )
+
+
+def _never_taken(survey: Survey, domain: Domain) -> Iterator[Diagnostic]:
+    taken = {demand.resource.predicate for schema in domain.schemas.values() for demand in schema.uses}
+    for what, name in survey.names:
+        if what == "resource" and name.text not in taken:
+            message = f"no action uses the resource {name.text}"
+            yield survey.source.diagnostic(name.offset, "unused-resource", message, severity="warning")
 
 
 def _suspicious(survey: Survey) -> Iterator[Diagnostic]:

@@ -106,6 +106,32 @@ class Persistence:
     place: Place | None = field(default=None, compare=False, repr=False)
 
 
+class Duration(msgspec.Struct, frozen=True):
+    """How long an action may last, in milliseconds."""
+
+    least: float
+    most: float
+
+
+@dataclass(frozen=True, slots=True)
+class Resource:
+    """What only so many can use at one time: an arm, a camera, the slots of a tray (then with parameters:
+    each tray has slots of its own).
+    """
+
+    name: str
+    parameters: int = 0
+    capacity: int = 1
+    place: Place | None = field(default=None, compare=False, repr=False)
+
+
+class Demand(msgspec.Struct, frozen=True):
+    """What an action takes of a resource, from its start to its end."""
+
+    resource: Atom
+    amount: int = 1
+
+
 @dataclass(frozen=True, slots=True)
 class ActionSchema:
     """An action: basic if `expansions` is empty (a process that the reactor can run), abstract
@@ -115,7 +141,8 @@ class ActionSchema:
     assumptions that the action brings in without needing them, `applicability` must hold when it is
     selected, `executability` is chained on. A schema that `senses` takes no time worth ordering;
     `otherwise` is what its abort tells. A `cleanup` may be run at any time, does nothing where its
-    conditions do not hold, and serves the fail branch of a reaction.
+    conditions do not hold, and serves the fail branch of a reaction. `duration` and `uses` say how long it
+    lasts and what it takes meanwhile, where the domain knows.
     """
 
     name: str
@@ -131,6 +158,8 @@ class ActionSchema:
     expansions: tuple[Atom, ...] = ()
     senses: bool = False
     cleanup: bool = False
+    duration: Duration | None = None
+    uses: tuple[Demand, ...] = ()
     place: Place | None = field(default=None, compare=False, repr=False)
 
     @property
@@ -169,6 +198,7 @@ class Domain:
         "goals",
         "persistences",
         "producers",
+        "resources",
         "rules",
         "rules_for",
         "schemas",
@@ -184,6 +214,7 @@ class Domain:
         persistences: Iterable[Persistence] = (),
         facts: Iterable[Atom] = (),
         schemas: Iterable[ActionSchema] = (),
+        resources: Iterable[Resource] = (),
         file: str = "<text>",
     ) -> None:
         self.file = file
@@ -193,6 +224,7 @@ class Domain:
         self.exclusions = tuple(exclusions)
         self.persistences: Mapping[str, tuple[Persistence, ...]] = _grouped((p.atom.predicate, p) for p in persistences)
         self.facts: Mapping[str, tuple[Atom, ...]] = _grouped((f.predicate, f) for f in facts)
+        self.resources: Mapping[str, Resource] = MappingProxyType({r.name: r for r in resources})
         self.schemas: Mapping[str, ActionSchema] = MappingProxyType({s.name: s for s in schemas})
         self.rules_for: Mapping[str, tuple[Rule, ...]] = _grouped((r.head.predicate, r) for r in self.rules)
         self.producers: Mapping[str, tuple[tuple[ActionSchema, Effect], ...]] = _grouped(

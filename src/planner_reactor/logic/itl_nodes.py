@@ -82,6 +82,20 @@ class FactNode(msgspec.Struct, frozen=True):
     clause: Clause
 
 
+class ResourceNode(msgspec.Struct, frozen=True):
+    name: Name
+    parameters: tuple[Name, ...]
+    capacity: Name | None
+
+
+class DemandNode(msgspec.Struct, frozen=True):
+    """`arm`, `slots(t) 2`: what an action takes of a resource."""
+
+    resource: Name
+    arguments: tuple[Name, ...]
+    amount: Name | None
+
+
 class SchemaNode(msgspec.Struct, frozen=True):
     name: Name
     inputs: tuple[Name, ...]
@@ -89,6 +103,8 @@ class SchemaNode(msgspec.Struct, frozen=True):
     marks: tuple[str, ...]
     intervals: tuple[Name, ...]
     sections: tuple[tuple[str, Clause], ...]
+    duration: tuple[Name, Name] | None = None
+    uses: tuple[DemandNode, ...] = ()
 
 
-Sentence: TypeAlias = AssumptionNode | GoalNode | RuleNode | PersistenceNode | FactNode | SchemaNode
+Sentence: TypeAlias = AssumptionNode | GoalNode | RuleNode | PersistenceNode | FactNode | ResourceNode | SchemaNode

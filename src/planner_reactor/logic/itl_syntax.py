@@ -1,15 +1,18 @@
 """The grammar of a domain text `*.itl`: from tokens to the sentences that it consists of, nothing resolved yet.
 
-    sentence    = assumption | goal | rule | persistence | fact | schema
+    sentence    = assumption | goal | rule | persistence | fact | resource | schema
     assumption  = "atp_assumption" NAME "(" [names] ")" {"likelihood" NUMBER | "monitor" monitor | "reinstatable"} ";"
     monitor     = "flag" NUMBER | "reaction"
     goal        = "atp_goal" NAME ["forall" names ":"] clause ["=>" clause] ";"
     rule        = "atp_rule" ["forall" names ":"] clause ("=>" | "<=>") clause ";"
     persistence = "atp_persistence" ["forall" names ":"] atom "while" atom {"and" atom} ";"
     fact        = "atp_fact" clause ";"
+    resource    = "atp_resource" NAME ["(" names ")"] ["capacity" NUMBER] ";"
     schema      = "atp_actionschema" NAME ["<" [names] ">" "<" [names] ">"] {"senses" | "cleanup"}
-                  {"intervals" names ";" | ("input" | "output" | "intervals") ":" names [";"] | LABEL ":" clauses}
+                  {"intervals" names ";" | ("input" | "output" | "intervals") ":" names [";"] | LABEL ":" clauses
+                  | "duration" ":" NUMBER [".." NUMBER] ";" | "uses" ":" use {"," use} ";"}
                   "endactionschema" [NAME] [";" | ":"]
+    use         = NAME ["(" [names] ")"] [NUMBER]
     clauses     = clause {";" clause} [";"]
     clause      = ["Exists" names ":"] literal {"and" literal}
     literal     = atom ["@" NAME] | "(" clause ")" ["@" NAME] | "[" clause "]" ["@" NAME]
@@ -30,20 +33,23 @@ from planner_reactor.logic.itl_nodes import (
     AssumptionNode,
     AtomNode,
     Clause,
+    DemandNode,
     FactNode,
     GoalNode,
     LiteralNode,
     Name,
     PersistenceNode,
     RelationNode,
+    ResourceNode,
     RuleNode,
     SchemaNode,
     Sentence,
     UnequalNode,
 )
-from planner_reactor.logic.itl_tokens import Source, Token, tokens
+from planner_reactor.logic.itl_tokens import Source, Token, WrongSentence, tokens
 
 LABELS = ("presumes", "applicability", "executability", "effects", "otherwise", "expansions")
+_FURTHER = ("intervals", "input", "output", "duration", "uses")
 
 
 def parse(source: Source) -> tuple[list[Sentence], list[Diagnostic]]:
@@ -56,16 +62,10 @@ def parse(source: Source) -> tuple[list[Sentence], list[Diagnostic]]:
     while reader.token.kind != "end":
         try:
             sentences.append(reader.sentence())
-        except _WrongSentence as error:
+        except WrongSentence as error:
             wrong.append(error.diagnostic)
             reader.skip_sentence()
     return sentences, wrong
-
-
-class _WrongSentence(Exception):
-    def __init__(self, diagnostic: Diagnostic) -> None:
-        super().__init__(str(diagnostic))
-        self.diagnostic = diagnostic
 
 
 class _Parser:
@@ -80,6 +80,7 @@ class _Parser:
             "atp_rule": self._rule,
             "atp_persistence": self._persistence,
             "atp_fact": self._fact,
+            "atp_resource": self._resource,
             "atp_actionschema": self._schema,
         }
 
@@ -156,12 +157,20 @@ class _Parser:
         self._need(";")
         return FactNode(clause)
 
+    def _resource(self) -> ResourceNode:
+        name, parameters = self._name("the name of a resource"), self._optional_arguments()
+        capacity = self._number("how many there are") if self._taken("capacity") else None
+        self._need(";", "capacity or ;")
+        return ResourceNode(name, parameters, capacity)
+
     def _schema(self) -> SchemaNode:
         name = self._name("the name of an action schema")
         inputs: tuple[Name, ...] = ()
         outputs: tuple[Name, ...] = ()
         intervals: tuple[Name, ...] = ()
         sections: list[tuple[str, Clause]] = []
+        duration: tuple[Name, Name] | None = None
+        uses: tuple[DemandNode, ...] = ()
         if self.token.text == "<":
             inputs, outputs = self._arguments("<>"), self._arguments("<>")
         marks: list[str] = []
@@ -176,18 +185,41 @@ class _Parser:
                 inputs = inputs + found if label == "input" else inputs
                 outputs = outputs + found if label == "output" else outputs
                 intervals = intervals + found if label == "intervals" else intervals
+            elif label == "duration":
+                duration = self._duration()
+            elif label == "uses":
+                uses += self._uses()
             elif label in LABELS:
-                self._advance()
-                self._need(":")
+                self._label()
                 sections.extend((label, clause) for clause in self._clauses())
             else:
-                words = (*LABELS, "intervals", "input", "output", "endactionschema")
+                words = (*LABELS, *_FURTHER, "endactionschema")
                 raise self._wrong(f"a section of the schema ({', '.join(LABELS)}) or endactionschema", words)
-        if self.token.text == name.text:
-            self._advance()
-        if self.token.text in (";", ":"):
-            self._advance()
-        return SchemaNode(name, inputs, outputs, tuple(marks), intervals, tuple(sections))
+        self._taken(name.text)
+        _ = self._taken(";") or self._taken(":")
+        return SchemaNode(name, inputs, outputs, tuple(marks), intervals, tuple(sections), duration, uses)
+
+    def _duration(self) -> tuple[Name, Name]:
+        self._label()
+        least = self._number("a duration in milliseconds")
+        most = self._number("the longest duration in milliseconds") if self._taken("..") else least
+        self._need(";", ".. or ;")
+        return least, most
+
+    def _uses(self) -> tuple[DemandNode, ...]:
+        self._label()
+        found = [self._demand()]
+        while self._taken(","):
+            found.append(self._demand())
+        self._need(";", ", or ;")
+        return tuple(found)
+
+    def _demand(self) -> DemandNode:
+        name, arguments = self._name("a resource"), self._optional_arguments()
+        return DemandNode(name, arguments, self._number("an amount") if self.token.kind == "number" else None)
+
+    def _optional_arguments(self) -> tuple[Name, ...]:
+        return self._arguments("()") if self.token.text == "(" else ()
 
     # ------------------------------------------------------------------------------------------- formulas
 
@@ -208,7 +240,7 @@ class _Parser:
         following = self._tokens[self._next + 1].text if self.token.kind == "name" else ""
         if word == "intervals":
             return following != "("
-        return following == ":" and word in (*LABELS, "input", "output")
+        return following == ":" and word in (*LABELS, *_FURTHER)
 
     def _clause(self) -> Clause:
         offset = self.token.offset
@@ -238,7 +270,7 @@ class _Parser:
         clause = self._clause()
         self._need(closing)
         if clause.exists:
-            raise _WrongSentence(
+            raise WrongSentence(
                 self.source.diagnostic(clause.offset, "misplaced-exists", "Exists inside brackets",
                                        "put it before the brackets")
             )  # fmt: skip
@@ -285,11 +317,11 @@ class _Parser:
             raise self._wrong(f"some of {' '.join(BASES)} inside the brackets before this")
         return found
 
-    def _unknown_relation(self, name: Name) -> _WrongSentence:
+    def _unknown_relation(self, name: Name) -> WrongSentence:
         known = (*NAMED, *BASES)
         hint = nearest(name.text, known) or f"expected one of {', '.join(NAMED)} or a list of {' '.join(BASES)}"
         message = f"{name.text} is not a relation between intervals"
-        return _WrongSentence(self.source.diagnostic(name.offset, "unknown-relation", message, hint))
+        return WrongSentence(self.source.diagnostic(name.offset, "unknown-relation", message, hint))
 
     # ---------------------------------------------------------------------------------------- small parts
 
@@ -345,6 +377,10 @@ class _Parser:
         self._advance()
         return True
 
+    def _label(self) -> None:
+        self._advance()
+        self._need(":")
+
     def _need(self, text: str, expected: str = "") -> None:
         if not self._taken(text):
             raise self._wrong(expected or text)
@@ -354,8 +390,8 @@ class _Parser:
             self._next += 1
             self.token = self._tokens[self._next]
 
-    def _wrong(self, expected: str, words: object = ()) -> _WrongSentence:
+    def _wrong(self, expected: str, words: object = ()) -> WrongSentence:
         found = self.token.text or "the end of the text"
         near = nearest(found, words) if isinstance(words, (tuple, dict)) else ""
         hint = f"expected {expected}" + (f"; {near}" if near else "")
-        return _WrongSentence(self.source.diagnostic(self.token.offset, "syntax", f"unexpected {found}", hint))
+        return WrongSentence(self.source.diagnostic(self.token.offset, "syntax", f"unexpected {found}", hint))

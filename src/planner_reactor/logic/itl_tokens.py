@@ -19,7 +19,7 @@ TEXT_LIMIT = 4_000_000
 _TOKEN = re.compile(
     r"""\s*(?://[^\n]*\s*)*(?:
      (?P<name>[A-Za-z_]\w*(?:-\w+)*)
-    |(?P<sign><=>|=>|/=|[@()\[\]<>,;:])
+    |(?P<sign><=>|=>|/=|\.\.|[@()\[\]<>,;:])
     |(?P<number>\d+(?:\.\d+)?)
     |(?P<end>\Z)
     |(?P<other>.))""",
@@ -33,6 +33,14 @@ class Token(NamedTuple):
     kind: str
     text: str
     offset: int
+
+
+class WrongSentence(Exception):
+    """A sentence that cannot be read, and why."""
+
+    def __init__(self, diagnostic: Diagnostic) -> None:
+        super().__init__(str(diagnostic))
+        self.diagnostic = diagnostic
 
 
 class Source:

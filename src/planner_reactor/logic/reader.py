@@ -29,6 +29,7 @@ from planner_reactor.logic.domain import (
     Rule,
 )
 from planner_reactor.logic.formulas import Atom, Term
+from planner_reactor.logic.itl_metrics import Metrics
 from planner_reactor.logic.itl_nodes import (
     AssumptionNode,
     AtomNode,
@@ -38,6 +39,7 @@ from planner_reactor.logic.itl_nodes import (
     Name,
     PersistenceNode,
     RelationNode,
+    ResourceNode,
     RuleNode,
     SchemaNode,
     Sentence,
@@ -104,6 +106,7 @@ class _Builder:
         self._persistences: list[Persistence] = []
         self._facts: list[Atom] = []
         self._schemas: list[ActionSchema] = []
+        self._metrics = Metrics(source, wrong, sentences)
 
     def domain(self) -> Domain:
         return Domain(
@@ -114,6 +117,7 @@ class _Builder:
             persistences=self._persistences,
             facts=self._facts,
             schemas=self._schemas,
+            resources=self._metrics.resources.values(),
             file=self._source.file,
         )
 
@@ -130,6 +134,8 @@ class _Builder:
                 self._persistences.append(self._persistence(sentence, scope))
             case FactNode():
                 self._facts.extend(self._fact(sentence, scope))
+            case ResourceNode():
+                self.survey.named("resource", sentence.name)
             case SchemaNode():
                 self._schemas.append(self._schema(sentence, scope))
 
@@ -286,6 +292,8 @@ class _Builder:
             expansions=tuple(atom for _, atom in atoms["expansions"]),
             senses="senses" in node.marks,
             cleanup="cleanup" in node.marks,
+            duration=self._metrics.duration(node),
+            uses=self._metrics.uses(node, scope),
             variables=tuple(scope.variables),
             place=self._source.place(node.name.offset),
         )
