@@ -1,0 +1,144 @@
+"""May this adaptation be applied? Decided before it is issued (R §5.5: consistent, safe, bounded, atomic, local).
+
+A `Verifier` takes the reactor as it stands, what comes, and the surgery. It looks at every way in which the slice of
+the reactor that matters (`slicing`) and the script can go on (`protocols`), and works out the bound in seconds from
+the windows of the basic processes (`rs.bounds`). Slices are the same up to names for adaptations of one shape, and are
+looked at once; what adds to nothing needs no look at all.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from math import inf, isinf
+
+import msgspec
+
+from planner_reactor.analysis.protocols import LIMIT, Checked, Counterexample, Protocol, check
+from planner_reactor.analysis.slicing import Slice, Sliced, sliced, unknown_names
+from planner_reactor.rs.bounds import Bounds
+from planner_reactor.rs.configurations import Ending, Label, World
+from planner_reactor.rs.reactions import REACTION, Reaction, Surgery, drain_script, wait_script
+from planner_reactor.rs.terms import Process, Program, Value, operands
+from planner_reactor.rs.vocabulary import Signature
+
+SCRIPTS: Mapping[str, Callable[[Surgery], Process]] = {"drain": drain_script, "wait": wait_script}
+"""How each mode writes a surgery as a process."""
+
+OPEN = {name: Signature(name, window=(0.0, inf)) for name in ("Works", "Asks")}
+
+
+class Environment(msgspec.Struct, frozen=True):
+    """What is known of the basic processes: signatures with their age windows, and limits beyond those (seconds)."""
+
+    signatures: Mapping[str, Signature] = msgspec.field(default_factory=dict)
+    limits: Mapping[str, float] = msgspec.field(default_factory=dict)
+
+
+class Verdict(msgspec.Struct, frozen=True, kw_only=True):
+    """What holds of an adaptation. `bound_s` is None where nothing is known of the basic processes.
+
+    `counterexample` holds the labels of a shortest path to what is broken first (`why`), the last `cycle` of them going
+    round for ever; `states` were looked at for it, 0 if it was known already.
+    """
+
+    consistent: bool = True
+    safe: bool = True
+    atomic: bool = True
+    local: bool = True
+    bounded: bool = True
+    bound_s: float | None = None
+    why: str = ""
+    counterexample: tuple[Label, ...] = ()
+    cycle: int = 0
+    states: int = 0
+
+    @property
+    def holds(self) -> bool:
+        """May the adaptation be issued?"""
+        return self.consistent and self.safe and self.atomic and self.local and self.bounded
+
+
+class Verifier:
+    """Verifies adaptations of one reactor, and remembers the shapes that it has seen."""
+
+    def __init__(self, environment: Environment | None = None, *, mode: str = "drain", limit: int = LIMIT) -> None:
+        self.environment = environment
+        self.seen: dict[Slice, Checked] = {}
+        self._script = SCRIPTS[mode]
+        self._limit = limit
+
+    def verify(self, present: Iterable[Reaction], new: Iterable[Reaction], surgery: Surgery) -> Verdict:
+        """Verify the surgery that adds `new` to a reactor of the reactions `present`."""
+        before, coming = list(present), list(new)
+        if vague := [(r, n) for r in (*before, *coming) for n in unknown_names(r.schema.body)]:
+            reaction, name = vague[0]
+            why = f"P[{reaction.label}] asserts a situation that is worked out at run time: {name}"
+            return Verdict(safe=False, local=False, bounded=False, why=why)
+        bound = self.bound(before, surgery)
+        part = sliced(before, coming, surgery)
+        known = self.seen.get(part.slice)
+        found = known or self._looked_at(part.slice)
+        return _verdict(found, bound, part, surgery, states=0 if known else found.states)
+
+    def bound(self, present: Iterable[Reaction], surgery: Surgery) -> float | None:
+        """Seconds in which what is held has been drained; None if nothing is known of the basic processes."""
+        if self.environment is None:
+            return None
+        reactions = list(present)
+
+        def served(situation: str) -> tuple[Process, ...]:
+            return tuple(operands(r.schema.body)[1] for r in reactions if r.situation == situation)
+
+        program = Program(r.schema for r in reactions)
+        return Bounds(program, self.environment.signatures, self.environment.limits, served).drains(surgery.held)
+
+    def _looked_at(self, part: Slice) -> Checked:
+        world = World(Program(part.schemas), OPEN, endings=_endings)
+        protocol = Protocol(
+            reactor=part.reactor,
+            script=self._script(part.surgery),
+            named=frozenset(part.surgery.named),
+            kills=frozenset(part.surgery.kills),
+            adds=frozenset(part.surgery.adds),
+        )
+        found = self.seen[part] = check(protocol, world, limit=self._limit)
+        return found
+
+
+def _endings(name: str, arguments: tuple[Value, ...]) -> Iterable[Ending]:
+    return [(True, ())] if name == "Asks" else [(True, ()), (False, ())]
+
+
+def _verdict(found: Checked, bound: float | None, part: Sliced, surgery: Surgery, *, states: int) -> Verdict:
+    endless = bound is not None and isinf(bound)
+    first = found.first
+    why = f"what serves {', '.join(surgery.held)} may go on for ever" if endless else ""
+    return Verdict(
+        consistent="consistent" not in found.broken,
+        safe="safe" not in found.broken,
+        atomic="atomic" not in found.broken,
+        local="local" not in found.broken,
+        bounded="bounded" not in found.broken and not endless,
+        bound_s=bound,
+        why=_meant(first.why, part) if first else why,
+        counterexample=_path(first, part) if first else (),
+        cycle=first.cycle if first else 0,
+        states=states,
+    )
+
+
+def _meant(text: str, part: Sliced) -> str:
+    """A sentence about the slice in the names of the reactor."""
+    words = text.replace(f"{REACTION}[", "KILL[").split(" ")
+    return " ".join(part.situations.get(word, word) for word in words)
+
+
+def _path(found: Counterexample, part: Sliced) -> tuple[Label, ...]:
+    return tuple(_named(label, part) for label in found.path)
+
+
+def _named(label: Label, part: Sliced) -> Label:
+    name, arguments, status, values = label
+    if name in ("KILL", "POST", "E"):
+        return name, tuple(part.labels.get(n, n) for n in arguments), status, values  # type: ignore[call-overload]
+    return name, tuple(part.situations.get(a, a) if isinstance(a, str) else a for a in arguments), status, values

@@ -1,0 +1,361 @@
+"""Is a script that changes a reactor safe? Every way in which both can go on is looked at (R §5.5).
+
+A script runs as a root of its own beside the reactor, as in the executer. Breadth first, so that what is broken is
+shown by a shortest path, these laws are asked of every state:
+
+    safe        no body is cut, and no KILL is reached while its reaction is at work
+    consistent  no instance is served by a reaction that goes and by one that comes
+    atomic      the script never aborts, and nothing waits after its first KILL
+    local       what is not named is neither held nor withdrawn, and what is named is not held up before it is drained
+    bounded     from every state the script can still end, and no fair run goes round without its end
+
+Weak fairness: what is possible from some moment on at every moment is done. A leaf is known by its place, so a leaf
+that starves is seen. Basic processes end at any age within their windows.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Hashable, Iterable, Iterator, Mapping, Sequence
+from math import inf
+from typing import Literal, TypeAlias
+
+import msgspec
+
+from planner_reactor.analysis.explore import canonical
+from planner_reactor.errors import BudgetError
+from planner_reactor.rs.configurations import Config, Label, World
+from planner_reactor.rs.evolves import started
+from planner_reactor.rs.leaves import RULES, elapsed, offers, resting, slack, window
+from planner_reactor.rs.states import Await, Ended, InstanceNumber, Leaf, Run, Waiting, parts_of, spots
+from planner_reactor.rs.store import Store
+from planner_reactor.rs.terms import Process, Value
+
+Law: TypeAlias = Literal["safe", "consistent", "atomic", "local", "bounded"]
+LAWS: tuple[Law, ...] = ("safe", "consistent", "atomic", "local", "bounded")
+
+LIMIT = 50_000
+"""States that are looked at unless a caller says otherwise."""
+
+REACTOR, SCRIPT = 1, 2
+"""The numbers of the two roots."""
+
+
+class Protocol(msgspec.Struct, frozen=True, kw_only=True):
+    """A reactor, a script beside it, and what the script is supposed to do.
+
+    `named` are the situations that it may hold; `kills` and `adds` the labels that go and come. `store` is where it
+    begins (for weaker readings of WAIT, see tests).
+    """
+
+    reactor: Process
+    script: Process
+    named: frozenset[str]
+    kills: frozenset[Value]
+    adds: frozenset[Value]
+    store: Store = msgspec.field(default_factory=Store)
+
+
+class Counterexample(msgspec.Struct, frozen=True):
+    """The law that is broken, why, and a shortest path to it; the last `cycle` steps go round for ever."""
+
+    law: Law
+    why: str
+    path: tuple[Label, ...]
+    cycle: int = 0
+
+
+class Checked(msgspec.Struct, frozen=True):
+    """What was found: for each law that is broken a shortest counterexample."""
+
+    broken: Mapping[Law, Counterexample]
+    states: int
+
+    @property
+    def first(self) -> Counterexample | None:
+        """The counterexample with the fewest steps."""
+        return min(self.broken.values(), key=lambda c: len(c.path), default=None)
+
+
+_Way: TypeAlias = tuple[int, frozenset[Hashable]]
+"""Where a way round is, and who could have taken a step at every state so far and has not."""
+
+
+class Move(msgspec.Struct, frozen=True):
+    """A step: who took it, and where it leads."""
+
+    label: Label
+    after: int
+    actor: Hashable
+
+
+def check(protocol: Protocol, world: World, *, limit: int = LIMIT) -> Checked:
+    """Ask every law. Raises `BudgetError` above `limit` states."""
+    search = _Search(protocol, world)
+    search.run(limit)
+    if (never := search.never_done()) is not None:
+        search.broken.setdefault("bounded", never)
+    return Checked(search.broken, len(search.states))
+
+
+class _Search:
+    """The states reached so far, and what is broken in them."""
+
+    def __init__(self, protocol: Protocol, world: World) -> None:
+        self.protocol = protocol
+        self.world = world
+        config = started(protocol.reactor, world, config=Config(store=protocol.store))
+        self.states = [canonical(started(protocol.script, world, config=config))]
+        self.moves: list[tuple[Move, ...]] = []
+        self.came_from: list[tuple[int, Label] | None] = [None]
+        self.broken: dict[Law, Counterexample] = {}
+
+    def run(self, limit: int) -> None:
+        """Reach every state up to the end of the script, and as long as it may be inconsistent after it."""
+        numbers = {self.states[0]: 0}
+        for here, state in enumerate(self.states):  # grows while it is read
+            found = []
+            for label, after, actor in self._successors(state):
+                number = numbers.setdefault(after, len(self.states))
+                if number == len(self.states):
+                    if number >= limit:
+                        raise BudgetError("states", f"more than {limit} states of reactor and script together")
+                    self.states.append(after)
+                    self.came_from.append((here, label))
+                    for law, why in self._breaches(after):
+                        if law not in self.broken:
+                            self.broken[law] = Counterexample(law, why, self.path(number))
+                found.append(Move(label, number, actor))
+            self.moves.append(tuple(found))
+
+    def _successors(self, state: Config) -> Iterator[tuple[Label, Config, Hashable]]:
+        if self.done(state) and not self._may_be_inconsistent(state):
+            return
+        urgent = False
+        for offer in offers(state, self.world):
+            urgent = urgent or offer.urgent
+            spot = offer.changes[0][0]
+            actor = (spot.root, spot.path, spot.guard, spot.owner)
+            yield offer.label, canonical(offer.taken(state, self.world)), actor
+        if not urgent and (pause := _next_edge(state, self.world)) < inf:
+            yield ("TIME", (pause,), "ok", ()), canonical(elapsed(state, pause, self.world)), "time"
+
+    def path(self, state: int) -> tuple[Label, ...]:
+        """The labels of a shortest way to a state."""
+        labels: list[Label] = []
+        while (step := self.came_from[state]) is not None:
+            state, label = step
+            labels.append(label)
+        return tuple(reversed(labels))
+
+    def done(self, state: Config) -> bool:
+        return isinstance(state.root(SCRIPT), Ended)
+
+    # -- laws of a state
+
+    def _breaches(self, after: Config) -> Iterator[tuple[Law, str]]:
+        yield from self._safe(after)
+        yield from self._consistent(after)
+        yield from self._atomic(after)
+        yield from self._local(after)
+
+    def _safe(self, after: Config) -> Iterator[tuple[Law, str]]:
+        if after.store.cut:
+            yield "safe", "a body in service is cut off"
+        label = _about_to_kill(after)
+        guarded = None if label is None else _guarded(after, label)
+        if guarded is not None and not resting(guarded) and _at_work(guarded, self.world):
+            yield "safe", f"KILL[{label}] is reached while its reaction is at work"
+
+    def _consistent(self, after: Config) -> Iterator[tuple[Law, str]]:
+        served: dict[InstanceNumber, set[object]] = {}
+        for reaction, number in after.store.served:
+            served.setdefault(number, set()).add(reaction.guard)
+        for number, guards in served.items():
+            if guards & self.protocol.kills and guards & self.protocol.adds:
+                situation = next(i.situation for i in after.store.instances if i.number == number)
+                yield "consistent", f"an instance of {situation} is served by the old reaction and by the new one"
+
+    def _may_be_inconsistent(self, state: Config) -> bool:
+        """Is an instance alive that a removed reaction has served?"""
+        return bool(self.protocol.adds) and any(r.guard in self.protocol.kills for r, _ in state.store.served)
+
+    def _atomic(self, after: Config) -> Iterator[tuple[Law, str]]:
+        term = after.root(SCRIPT)
+        if isinstance(term, Ended) and not term.ok:
+            yield "atomic", "the script aborts half-way"
+        if not _waits(term):
+            return
+        gone = [n for n in self.protocol.kills if _guarded(after, n) is None]
+        if gone:
+            yield "atomic", f"the script waits though P[{gone[0]}] is removed already"
+
+    def _local(self, after: Config) -> Iterator[tuple[Law, str]]:
+        store, named = after.store, self.protocol.named
+        held = {h.situation for h in store.inhibitions if h.owner == SCRIPT} | {
+            s for s, root in store.drains if root == SCRIPT
+        }
+        for situation in sorted(held - named):
+            yield "local", f"{situation} is held, and the adaptation does not name it"
+        for instance in store.instances:
+            if instance.withdrawn and not named.intersection(_line(store, instance.number)):
+                yield "local", f"an instance of {instance.situation} is withdrawn, and nothing above it is named"
+        for entry in store.queue:
+            if entry.situation not in held or entry.fate is not None or store.gone(entry.owner):
+                continue
+            if above := [s for s in _line(store, entry.owner) if s in named and s not in held]:
+                yield "local", f"{above[0]} is held up at {entry.situation}, and is not drained yet"
+
+    # -- is the script done at last?
+
+    def never_done(self) -> Counterexample | None:
+        """A run on which the script does not end: one that cannot, or one that goes round fairly."""
+        goal = [n for n, state in enumerate(self.states) if self.done(state)]
+        reaching = self._reaching(goal)
+        trapped = next((n for n in range(len(self.states)) if n not in reaching), None)
+        lasso = self._lasso({n for n in range(len(self.states)) if not self.done(self.states[n])})
+        stuck = None
+        if trapped is not None:
+            stuck = Counterexample("bounded", "from here on the script cannot end", self.path(trapped))
+        found = [c for c in (stuck, lasso) if c is not None]
+        return min(found, key=lambda c: len(c.path), default=None)
+
+    def _reaching(self, goal: Iterable[int]) -> set[int]:
+        before: dict[int, list[int]] = {}
+        for n, moves in enumerate(self.moves):
+            for move in moves:
+                before.setdefault(move.after, []).append(n)
+        found = set(goal)
+        waiting = list(found)
+        while waiting:
+            for n in before.get(waiting.pop(), ()):
+                if n not in found:
+                    found.add(n)
+                    waiting.append(n)
+        return found
+
+    def _lasso(self, within: set[int]) -> Counterexample | None:
+        """The shortest of the weakly fair lassos, one for each component."""
+        found: list[tuple[tuple[Label, ...], tuple[Label, ...]]] = []
+        for component in components(self.moves, within):
+            if self._is_fair(component):
+                found += self._round(component)
+        if not found:
+            return None
+        prefix, cycle = min(found, key=lambda way: len(way[0]) + len(way[1]))
+        why = "the script may wait for ever, though everything else is fair"
+        return Counterexample("bounded", why, (*prefix, *cycle), len(cycle))
+
+    def _is_fair(self, component: frozenset[int]) -> bool:
+        inner = [m for n in component for m in self.moves[n] if m.after in component]
+        always = set.intersection(*({m.actor for m in self.moves[n]} for n in component))
+        return bool(inner) and always <= {m.actor for m in inner}
+
+    def _round(self, component: frozenset[int]) -> Iterator[tuple[tuple[Label, ...], tuple[Label, ...]]]:
+        """The way in, and from there the shortest way back on which every actor has had its turn or no chance."""
+        first = min(component, key=lambda n: (len(self.path(n)), n))
+        start = (first, frozenset(m.actor for m in self.moves[first]))
+        before: dict[_Way, tuple[_Way, Label]] = {}
+        waiting = deque([start])
+        while waiting:
+            here = waiting.popleft()
+            for move in self.moves[here[0]]:
+                if move.after not in component:
+                    continue
+                owed = here[1].intersection(m.actor for m in self.moves[move.after]) - {move.actor}
+                after = (move.after, frozenset(owed))
+                if move.after == first and not owed:
+                    yield self.path(first), (*_back(before, here, start), move.label)
+                    return
+                if after not in before and after != start:
+                    before[after] = (here, move.label)
+                    waiting.append(after)
+
+
+def _back(before: Mapping[_Way, tuple[_Way, Label]], here: _Way, start: _Way) -> tuple[Label, ...]:
+    labels = []
+    while here != start:
+        here, label = before[here]
+        labels.append(label)
+    return tuple(reversed(labels))
+
+
+def components(moves: Sequence[Sequence[Move]], within: set[int]) -> list[frozenset[int]]:
+    """The strongly connected components of a part of a graph (Tarjan), without recursion."""
+    found: list[frozenset[int]] = []
+    index: dict[int, int] = {}
+    low: dict[int, int] = {}
+    stack: list[int] = []
+    open_: set[int] = set()
+    for root in sorted(within):
+        work = [(root, iter(moves[root]))] if root not in index else []
+        while work:
+            node, rest = work[-1]
+            if node not in index:
+                index[node] = low[node] = len(index)
+                stack.append(node)
+                open_.add(node)
+            onward = (m.after for m in rest if m.after in within)
+            below = next((after for after in onward if after not in index or after in open_), None)
+            if below is None:
+                work.pop()
+                if work:
+                    low[work[-1][0]] = min(low[work[-1][0]], low[node])
+                if low[node] == index[node]:
+                    at = stack.index(node)
+                    found.append(frozenset(stack[at:]))
+                    open_.difference_update(stack[at:])
+                    del stack[at:]
+            elif below not in index:
+                work.append((below, iter(moves[below])))
+            else:
+                low[node] = min(low[node], index[below])
+    return found
+
+
+# -------------------------------------------------------------------------------------- what a configuration shows
+
+
+def _next_edge(state: Config, world: World) -> float:
+    """Seconds to the next beginning or end of an age window."""
+    leaves = [spot.leaf for spot in state.spots() if isinstance(spot.leaf, Leaf)]
+    edges = [round(edge - leaf.age, 9) for leaf in leaves for edge in window(leaf, world) if edge < inf]
+    return min((edge for edge in edges if edge > 0), default=slack(state, world))
+
+
+def _about_to_kill(state: Config) -> Value | None:
+    for spot in spots(state.root(SCRIPT), SCRIPT):
+        if isinstance(spot.leaf, Leaf) and spot.leaf.name == "KILL" and spot.leaf.arguments:
+            return spot.leaf.arguments[0]
+    return None
+
+
+def _guarded(state: Config, label: Value) -> Run | None:
+    """What stands beside the guard with this label, if it is there."""
+    for spot in state.spots():
+        if isinstance(spot.leaf, Leaf) and spot.leaf.name == "E" and spot.leaf.arguments == (label,):
+            group = state.root(spot.root)
+            for index in spot.path[:-1]:
+                group = parts_of(group)[index]
+            return parts_of(group)[1 - spot.path[-1]] if len(parts_of(group)) == 2 else group
+    return None
+
+
+def _at_work(term: Run, world: World) -> bool:
+    """Is there anything in it that takes time? (What is urgent is over before the KILL has its turn.)"""
+    if isinstance(term, Await | Waiting):
+        return True
+    if isinstance(term, Leaf):
+        return term.name not in RULES and window(term, world)[1] > 0
+    return any(_at_work(part, world) for part in parts_of(term))
+
+
+def _waits(term: Run) -> bool:
+    return isinstance(term, Waiting) or any(_waits(part) for part in parts_of(term))
+
+
+def _line(store: Store, number: int | None) -> Iterator[str]:
+    """The situation of an instance, and those above it."""
+    while number is not None and (instance := store.get(number)) is not None:
+        yield instance.situation
+        number = instance.owner
