@@ -25,6 +25,7 @@ from planner_reactor.rs.states import (
     Bindings,
     Delivered,
     Ended,
+    Group,
     Leaf,
     Queued,
     Reaction,
@@ -161,7 +162,7 @@ def _mistaken(leaf: Leaf, world: World) -> bool:
 def _seconds(leaf: Leaf) -> float:
     value = leaf.arguments[0] if leaf.arguments else None
     if isinstance(value, Symbolic):
-        return value  # type: ignore[return-value]  # arithmetic and order are those of a float; taken as not negative
+        return value if value > 0 else 0.0  # type: ignore[return-value]  # arithmetic and order are those of a float
     return max(0.0, float(value)) if is_number(value) else 0.0  # type: ignore[arg-type]
 
 
@@ -391,6 +392,16 @@ def _retired(leaver: Spot, leaf: Leaf, spots: list[Spot], config: Config) -> Ite
         yield Offer(("RETIRE", (label,), AB, ()), ((leaver, Ended(False, cause="error")),), config.store)
 
 
+def _guarding(guard: Spot, leaf: Leaf, spots: list[Spot], config: Config) -> Iterator[Offer]:
+    """E[n] guards what stands beside it in a `#`; one that guards nothing is refused, and one of two with one label."""
+    group = config.root(guard.root)
+    for index in guard.path[:-1]:
+        group = parts_of(group)[index]
+    beside = guard.path and isinstance(group, Group) and group.operator == "#"
+    if not beside or len(_named(spots, "E", leaf.arguments)) > 1:
+        yield Offer(("E", leaf.arguments, AB, ()), ((guard, Ended(False, cause="error")),), config.store)
+
+
 def resting(term: Run, *, sensing: bool | None = None) -> bool:
     """Is nothing of this reaction in service? It waits for a situation, or senses in the condition of a loop.
 
@@ -440,9 +451,9 @@ RULES: dict[str, Rule] = {
     "HOLDMONITOR": monitor,
 }
 
-MEETINGS: dict[str, Meeting] = {"OUT": _communicated, "POST": _posted, "KILL": _killed, "RETIRE": _retired}
+MEETINGS: dict[str, Meeting] = {"OUT": _communicated, "POST": _posted, "KILL": _killed, "RETIRE": _retired, "E": _guarding}
 
-PASSIVE = frozenset({"NIL", "IN", "E", "ADD"})
+PASSIVE = frozenset({"NIL", "IN", "ADD"})
 """Leaves that have no step of their own."""
 
 RESTING = frozenset({"NIL", "E", "ADD", "SIT", "ASSUMONITOR", "HOLDMONITOR"})

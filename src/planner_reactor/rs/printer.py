@@ -118,7 +118,7 @@ def _expression(expression: Expression, floor: int = 0) -> str:
             return _constant_or_name(expression)
         case Apply(function, arguments):
             return f"{function}({', '.join(map(_expression, arguments))})"
-        case Negative(Number() as number):  # `-3` is the number
+        case Negative(Number(int() | float()) as number):  # `-3` is the number
             return f"-({_expression(number)})"
         case Negative(operand):
             return _parenthesised(f"-{_expression(operand, PREFIX_MINUS - 1)}", PREFIX_MINUS, floor)

@@ -7,7 +7,8 @@ run on these values as on any others. Where they ask what nobody knows, is `p < 
 and `courses` runs the same code once for each answer that what is known already leaves open. The answers of a course
 are its condition. Whether constraints can hold together is asked of `constraints`.
 
-Legend: unknowns that were there from the start have serial 0, later ones 1, 2, …; a sum names older ones first.
+Legend: unknowns that were there from the start have serial 0, or -1 where they shall come before the others; later
+ones have 1, 2, …; a sum names older ones first.
 """
 
 from __future__ import annotations

@@ -1,0 +1,266 @@
+"""Limit sets: where an environment model comes to, and under which conditions (X §4.3.2; (4), (8), (12), (15)).
+
+A limit is the first state of a path in which one component of the network invokes a recursion with changed arguments,
+reaches a pseudo-bound (a sensory process), or ends for good; or in which nothing can evolve any more. The other
+components are then written at their recursion heads, so `TEM[p + g, a]` says that the object has moved and nothing
+else. Components communicate: what a camera reads is what the object says.
+
+Conditions leave out how long things take and what meets within the network. A delay of unknown length may end at any
+time; delays of known length take exactly that, so other delays may give other limits. Zero-time tests are urgent, and
+the pause of a STREAM is short against every unknown delay. A limit under a condition that asks for more than another
+for the same term is left out.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Collection, Iterator
+from math import inf
+from typing import Literal, TypeAlias
+
+import msgspec
+from msgspec.structs import replace
+
+from planner_reactor.analysis.conditions import Condition, constraints_of, events_of, mentioned, shortened, weaker
+from planner_reactor.analysis.evolution import DURATIONS, Evolution, State, immediate, outside
+from planner_reactor.analysis.explore import boundaries, canonical
+from planner_reactor.analysis.recursions import MARK, bounded, invoked
+from planner_reactor.analysis.renaming import renamed, unknowns_of
+from planner_reactor.analysis.residuals import Residuals
+from planner_reactor.analysis.subnets import Network, folded, network, open_ports
+from planner_reactor.rs.configurations import Config, World
+from planner_reactor.rs.constraints import consistent, projected
+from planner_reactor.rs.evolves import begin, settle, started
+from planner_reactor.rs.leaves import elapsed, slack
+from planner_reactor.rs.prelude import QUANTUM
+from planner_reactor.rs.states import Ended, Leaf, Run, Spot, parts_of, with_parts
+from planner_reactor.rs.terms import STOP, Call, Par, Process, Value
+from planner_reactor.rs.unknowns import Constraint, Symbolic, Unknown, courses
+
+Kind: TypeAlias = Literal["recursion", "bound", "end", "stuck"]
+
+KINDS: tuple[Kind, ...] = ("recursion", "bound", "end", "stuck")
+
+LIMIT = 20_000
+"""States that are reached unless a caller says otherwise."""
+
+
+class Limit(msgspec.Struct, frozen=True):
+    """One entry: under this condition the process comes to this term; `component` is what has changed, as it began."""
+
+    condition: Condition
+    term: Process
+    kind: Kind
+    component: Process | None = None
+
+
+class LimitSet(msgspec.Struct, frozen=True):
+    """All limits, in the order of the components. `complete` is False if the budget of states ran out before."""
+
+    limits: tuple[Limit, ...]
+    states: int
+    complete: bool
+
+
+def limit_set(
+    process: Process,
+    world: World,
+    *,
+    sensors: Collection[str] = (),
+    ports: Collection[Value] | None = None,
+    limit: int = LIMIT,
+) -> LimitSet:
+    """The limit set of a process with pseudo-bounds `sensors` (names of definitions or of basic processes).
+
+    `ports` are open to the world outside (default: those of which the network has one side only).
+    """
+    return _Search(process, world, tuple(sensors), ports).run(limit)
+
+
+class _Search:
+    def __init__(
+        self, process: Process, world: World, sensors: tuple[str, ...], ports: Collection[Value] | None
+    ) -> None:
+        self._process = process
+        self._whole = world
+        self._tree: Network = network(process, world, whole=sensors)
+        self._components = self._tree.components
+        self._world = bounded(world, [c.name for c in self._components if isinstance(c, Call)], sensors)
+        self._sensors = sensors
+        self._ports = open_ports(self._components, world) if ports is None else ports
+        self._found: list[Limit] = []
+        self._seen: dict[Config, list[Condition]] = {}
+        self.states = 0
+
+    def run(self, limit: int) -> LimitSet:
+        waiting: deque[tuple[State, Condition]] = deque()
+        for config, supposed in courses(self._begun, (), consistent):
+            waiting.append((State(config, supposed), supposed))
+        while waiting and self.states < limit:
+            state, condition = waiting.popleft()
+            self.states += 1
+            waiting += self._followed(state, condition)
+        return LimitSet(tuple(sorted(self._found, key=self._order)), self.states, not waiting)
+
+    def _begun(self) -> Config:
+        config = Config()
+        for component in self._components:
+            config = started(component, self._world, config=config)
+        return _untimed(config)
+
+    # ---------------------------------------------------------------------------------------------- one state
+
+    def _followed(self, state: State, condition: Condition) -> Iterator[tuple[State, Condition]]:
+        """The states after this one, unless it is a limit or has been met."""
+        state = self._unfolded(state)
+        limits = list(self._limits(state))
+        if limits or not (moves := self._moves(state, condition)):
+            for kind, term, component in limits:
+                self._add(kind, term, component, state, condition)
+            if not limits:
+                self._add("stuck", self._stuck(state), None, state, condition)
+            return
+        for e in moves:
+            after = replace(e.after, config=_untimed(e.after.config))
+            told = self._told((*condition, *e.condition), after)
+            if self._is_new(after, told):
+                yield replace(after, known=constraints_of(told)), told
+
+    def _moves(self, state: State, condition: Condition) -> list[Evolution]:
+        """What is urgent, or else everything that may happen next."""
+        now = list(immediate(state, self._world))
+        hurried = [e for e in now if e.urgent]
+        if hurried:
+            return hurried
+        quick = list(self._quick(state))
+        if any(self._is_new(e.after, self._told(condition, e.after), look=True) for e in quick):
+            return quick
+        later = [] if quick else self._later(state)
+        return [*now, *outside(state, self._world, self._ports), *quick, *later]
+
+    def _quick(self, state: State) -> Iterator[Evolution]:
+        """The ends of the pauses of STREAMs, if all else that takes time takes it as it likes."""
+        timed = [s for s in state.config.spots() if isinstance(s.leaf, Leaf) and s.leaf.name in DURATIONS]
+        pauses = [s for s in timed if isinstance(s.leaf, Leaf) and _is_pause(s.leaf)]
+        if all(s in pauses or (isinstance(s.leaf, Leaf) and s.leaf.arguments == (inf,)) for s in timed):
+            for spot in pauses:
+                after = settle(state.config.put(spot, Ended(True)), self._world)
+                yield Evolution((), replace(state, config=after), ("Delay", (QUANTUM,), "ok", ()))
+
+    def _later(self, state: State) -> Iterator[Evolution]:
+        """TIME: to the next instant at which a window opens or closes."""
+        ahead = (d for d in boundaries(state.config, self._world) if d > 0)
+        if (seconds := min((*ahead, slack(state.config, self._world)), default=inf)) < inf:
+            after = elapsed(state.config, seconds, self._world)
+            yield Evolution((), replace(state, config=after), ("TIME", (seconds,), "ok", ()))
+
+    def _unfolded(self, state: State) -> State:
+        """Recursions with the arguments that they had are gone into."""
+        while (found := next(self._recursions(state.config, changed=False), None)) is not None:
+            spot, call = found
+            term = begin(call, (), self._world)
+            state = replace(state, config=_untimed(settle(state.config.put(spot, term), self._world)))
+        return state
+
+    def _recursions(self, config: Config, *, changed: bool) -> Iterator[tuple[Spot, Call]]:
+        for spot in config.spots():
+            if isinstance(spot.leaf, Leaf) and spot.leaf.name.endswith(MARK):
+                call, entry = invoked(spot.leaf.name, spot.leaf.arguments, self._whole.program)
+                if entry is None and isinstance(own := self._components[spot.root - 1], Call) and own.name == call.name:
+                    same = own.arguments == call.arguments
+                else:
+                    same = entry == spot.leaf.arguments[: len(call.arguments)]
+                if same is not changed:
+                    yield spot, call
+
+    # ------------------------------------------------------------------------------------------------- limits
+
+    def _limits(self, state: State) -> Iterator[tuple[Kind, Process, Process]]:
+        for spot, call in self._recursions(state.config, changed=True):
+            own = self._components[spot.root - 1]
+            if isinstance(own, Call) and own.name == call.name:
+                yield "recursion", self._network({own: call}), own
+            else:
+                yield "recursion", _beside(self._network({}), call), own
+        for spot in state.config.spots():
+            if isinstance(spot.leaf, Leaf) and spot.leaf.name in self._sensors:
+                own = self._components[spot.root - 1]
+                sensor = Residuals({}).residual(spot.leaf, self._whole)
+                yield "bound", sensor if own == sensor else _beside(self._network({}), sensor), own
+        for (_, term), own in zip(state.config.roots, self._components, strict=True):
+            if isinstance(term, Ended):
+                yield "end", self._network({own: None}), own
+
+    def _network(self, changed: dict[Process, Process | None]) -> Process:
+        return folded(self._tree, changed, self._whole) or STOP
+
+    def _stuck(self, state: State) -> Process:
+        return Residuals({}).network(state.config, self._world)
+
+    def _add(self, kind: Kind, term: Process, component: Process | None, state: State, condition: Condition) -> None:
+        asked = constraints_of(condition)
+        keep = {*_given(asked), *unknowns_of(term), *mentioned(events_of(condition))}
+        asked = shortened(projected(asked, keep))
+        new = renamed(Limit((*events_of(condition), *asked), term, kind, component))
+        same = [old for old in self._found if old.term == new.term and old.kind == kind]
+        if not any(weaker(old.condition, new.condition) for old in same):
+            dropped = [old for old in same if weaker(new.condition, old.condition)]
+            self._found = [*(old for old in self._found if old not in dropped), new]
+
+    def _order(self, found: Limit) -> tuple[float, int]:
+        place = self._components.index(found.component) if found.component in self._components else inf
+        return place, KINDS.index(found.kind)
+
+    # --------------------------------------------------------------------------------- what has been met before
+
+    def _told(self, condition: Condition, after: State) -> Condition:
+        """The condition as far as anybody may ask for it: no delays, no meetings, nothing of what is forgotten."""
+        events = tuple(
+            e for e in events_of(condition) if e.kind != "meeting" and e.name not in (*DURATIONS, "Ran")
+        )
+        constraints = constraints_of(condition)
+        if not constraints or after.serial == 1:
+            return tuple(dict.fromkeys((*events, *constraints)))
+        keep = {*_given(constraints), *unknowns_of(after.config), *mentioned(events)}
+        return (*dict.fromkeys(events), *projected(constraints, keep))
+
+    def _is_new(self, state: State, condition: Condition, *, look: bool = False) -> bool:
+        """Has this configuration not been met under a condition that asks for no more? Then it has now."""
+        key, told = canonical(state.config), condition
+        if state.serial > 1:
+            key, told = renamed((key, told))
+        before = self._seen.get(key, [])
+        if any(weaker(known, told) for known in before):
+            return False
+        if not look:
+            self._seen[key] = [*(known for known in before if not weaker(told, known)), told]
+        return True
+
+
+def _given(constraints: tuple[Constraint, ...]) -> Iterator[Unknown]:
+    """The unknowns of the constraints that were there from the start."""
+    return (u for u in mentioned(constraints) if u.serial <= 0)
+
+
+def _beside(term: Process, more: Process) -> Process:
+    return Par((*term.parts, more)) if isinstance(term, Par) else Par((term, more))
+
+
+def _is_pause(leaf: Leaf) -> bool:
+    """Is it the pause of a STREAM? The prelude stands in no text."""
+    return leaf.name == "Delay" and leaf.site is None and leaf.arguments == (QUANTUM,)
+
+
+def _untimed(config: Config) -> Config:
+    """The configuration in which what takes an unknown time may end at any time."""
+    return replace(config, roots=tuple((n, _unhurried(term)) for n, term in config.roots))
+
+
+def _unhurried(term: Run) -> Run:
+    if isinstance(term, Leaf):
+        if term.name in DURATIONS and term.arguments and isinstance(term.arguments[0], Symbolic):
+            return replace(term, name="Term", arguments=(inf,), age=0.0)
+        return term
+    parts = parts_of(term)
+    new = tuple(map(_unhurried, parts))
+    return term if all(a is b for a, b in zip(new, parts, strict=True)) else with_parts(term, new)
