@@ -1,7 +1,7 @@
 """Linear-time formulas: their terms, their normal form, and what they mean on a run that goes round (a lasso).
 
 X is `next`, U is `until`; everything else is made of these. `holds` is the plain meaning, by looking at every moment;
-`automata` translates the same formulas for a search, and is held against it.
+`tableau` translates the same formulas for a search, and is held against it.
 """
 
 from __future__ import annotations
