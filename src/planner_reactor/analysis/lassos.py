@@ -13,8 +13,8 @@ from collections.abc import Callable, Iterable, Sequence
 
 import msgspec
 
-from planner_reactor.analysis.tableau import Automaton
 from planner_reactor.analysis.systems import Move, System
+from planner_reactor.analysis.tableau import Automaton
 from planner_reactor.errors import BudgetError
 from planner_reactor.rs.configurations import Label
 

@@ -9,10 +9,10 @@ from __future__ import annotations
 import msgspec
 from msgspec.structs import replace
 
-from planner_reactor.analysis.tableau import Automaton, Edge, automaton
 from planner_reactor.analysis.lassos import Justice, Lasso, accepted
 from planner_reactor.analysis.notation import Fairness, Property
 from planner_reactor.analysis.systems import System
+from planner_reactor.analysis.tableau import Automaton, Edge, automaton
 from planner_reactor.analysis.temporal import Negation
 from planner_reactor.rs.configurations import Label
 from planner_reactor.rs.states import InstanceNumber

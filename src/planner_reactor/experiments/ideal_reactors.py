@@ -44,8 +44,8 @@ class Planned(msgspec.Struct):
     rests: dict[str, frozenset[str]] = msgspec.field(default_factory=dict)
 
     def apply(self, adaptation: Adaptation) -> None:
-        for label in adaptation.kills:
-            self.clauses.pop(label, None)
+        for killed in adaptation.kills:
+            self.clauses.pop(killed, None)
         for schema in parse_program(adaptation.definitions).schemas:
             (label,) = schema.head
             assert isinstance(label, Number)
