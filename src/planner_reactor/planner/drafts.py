@@ -27,7 +27,6 @@ class Draft:
     settled: set[Situation] = field(default_factory=set)
     left: set[Situation] = field(default_factory=set)
     thought: tuple[Key, Work[Refinement]] | None = None  # what is being worked out
-    laborious: bool = False  # so much that issuing is a step of its own
 
     def __post_init__(self) -> None:
         if self.segment.avoided:
@@ -38,6 +37,11 @@ class Draft:
     @property
     def refinements(self) -> dict[Situation, Refinement]:
         return self.drafted.refinements
+
+    @property
+    def size(self) -> int:
+        """How many calls of sub-situations there are in it: what it takes to issue it grows with that."""
+        return sum(len(refinement.children) for refinement in self.drafted.refinements.values())
 
     def to_avoid(self, situation: Situation) -> frozenset[str]:
         """The abstract actions that are not to be used for it."""

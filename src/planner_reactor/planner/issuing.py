@@ -40,6 +40,13 @@ class UnderWay(msgspec.Struct, frozen=True):
     monitors: dict[Monitor, int]
 
 
+class Difference(msgspec.Struct, frozen=True):
+    """What a draft touches in the reactor, and what it leaves without a caller."""
+
+    touched: frozenset[Situation]
+    gone: tuple[Segment, ...]
+
+
 @dataclass(slots=True)
 class _Parts:
     """What one adaptation consists of, while it is put together."""
@@ -81,18 +88,23 @@ class Issuer:
         """The adaptation under way that touches any of these, if one does."""
         return next((n for n, flight in self.under_way.items() if not flight.touched.isdisjoint(situations)), None)
 
-    def touched_by(self, draft: Draft) -> frozenset[Situation]:
+    def difference(self, draft: Draft) -> Difference:
         """All situations that the draft would change, remove, or newly refer to."""
-        segment = draft.segment
-        refinement = draft.refinements[segment.situation]
-        gone = self.model.orphans(segment, refinement.children)
-        referred = {c.situation for r in draft.refinements.values() for c in r.children}
-        fresh = {s for s in referred if s not in self.model.segments or self.model.segments[s].version == 0}
-        callers = {caller for orphan in gone for caller in self.model.callers(orphan.situation)}
-        return frozenset({segment.situation, *draft.refinements, *fresh, *callers, *(o.situation for o in gone)})
+        segments, own = self.model.segments, draft.segment.situation
+        gone = self.model.orphans(draft.segment, draft.refinements[own].children)
+        touched = {own, *draft.refinements}
+        for refinement in draft.refinements.values():
+            for child in refinement.children:
+                segment = segments.get(child.situation)
+                if segment is None or segment.version == 0:
+                    touched.add(child.situation)
+        for orphan in gone:
+            touched.add(orphan.situation)
+            touched.update(self.model.callers(orphan.situation))
+        return Difference(frozenset(touched), tuple(gone))
 
     def issue(
-        self, draft: Draft, touched: frozenset[Situation], beliefs: Beliefs, holding: Mapping[str, int]
+        self, draft: Draft, difference: Difference, beliefs: Beliefs, holding: Mapping[str, int]
     ) -> Adaptation | None:
         """Record the draft in the model and write the adaptation; None if nothing in the reactor
         has to change.
@@ -100,14 +112,13 @@ class Issuer:
         segment, model = draft.segment, self.model
         refinement = draft.refinements[segment.situation]
         text = self.sheets.reaction(refinement)
-        gone = model.orphans(segment, refinement.children)
         new = self._new(draft)
-        before = tuple(model.snapshot([segment.situation, *new, *(o.situation for o in gone)]))
-        same = segment.label is not None and text == segment.text
-        told = segment.required
-        used = set(model.used())
-        parts = _Parts()
+        before = tuple(model.snapshot([segment.situation, *new, *(o.situation for o in difference.gone)]))
         first = segment.label is None
+        same = not first and text == segment.text
+        told = segment.required
+        used = frozenset(model.uses)
+        parts = _Parts()
         if first and segment.situation == model.root:
             self._add(parts, show(reactions.root(segment.situation, model.names)))
         model.put(segment, refinement)
@@ -121,14 +132,14 @@ class Issuer:
         self.introduced = []
         for situation, path in new.items():
             self._introduce(parts, situation, path, draft)
-        for orphan in gone:
+        for orphan in difference.gone:
             if orphan.label is not None:
                 parts.kills.append(orphan.label)
             parts.removed.append(orphan.name)
             model.remove(orphan)
         monitors = dict(self.monitors)
-        self._watch(parts, beliefs, {a: n for a, n in holding.items() if not model.uses[a]})
-        return self._send(parts, draft, touched, before, monitors, used)
+        self._watch(parts, beliefs, {a: n for a, n in holding.items() if a not in model.uses})
+        return self._send(parts, draft, difference.touched, before, monitors, used)
 
     def reconcile(
         self, beliefs: Beliefs, holding: Mapping[str, int], asked: Mapping[Atom, Action]
@@ -136,7 +147,7 @@ class Issuer:
         """An adaptation for monitors and perception requests alone, if any are missing or left over."""
         if self.refused_alone >= MOST_REFUSALS:
             return None
-        parts, monitors, used = _Parts(), dict(self.monitors), set(self.model.used())
+        parts, monitors, used = _Parts(), dict(self.monitors), frozenset(self.model.uses)
         self._watch(parts, beliefs, holding)
         for atom, action in asked.items():
             if atom not in self.requests:
@@ -189,7 +200,7 @@ class Issuer:
 
     def _watch(self, parts: _Parts, beliefs: Beliefs, holding: Mapping[str, int]) -> None:
         """Bring the monitors into line with the assumptions in use."""
-        watched = (frozenset(self.model.used()), tuple(holding.items()))
+        watched = (frozenset(self.model.uses), tuple(holding.items()))
         if watched == self._watched and not self._strays:
             return
         self._watched = watched
@@ -219,11 +230,11 @@ class Issuer:
         touched: frozenset[Situation],
         before: tuple[tuple[Situation, Segment | None], ...],
         monitors: dict[Monitor, int],
-        used: set[str],
+        used: frozenset[str],
     ) -> Adaptation | None:
         if not (parts.changes or parts.kills or parts.adds):
             return None
-        after = set(self.model.used())
+        after = frozenset(self.model.uses)
         adaptation = Adaptation(
             id=self.next_id,
             epoch=self.epoch,
@@ -234,8 +245,8 @@ class Issuer:
             adds=tuple(reversed(parts.adds)),
             mode=self.mode,
             purpose=draft.purpose if draft else "monitors and requests",
-            drops=tuple(sorted(used - after)),
-            adopts=tuple(sorted(after - used)),
+            drops=tuple(sorted(used - after)) if used != after else (),
+            adopts=tuple(sorted(after - used)) if used != after else (),
         )
         self.next_id += 1
         situation = draft.segment.situation if draft else None

@@ -8,7 +8,6 @@ found, with the reason.
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
@@ -57,7 +56,7 @@ class Segment(msgspec.Struct):
     @property
     def in_use(self) -> frozenset[str]:
         """The assumptions that it rests on or brings in."""
-        return self.required | self.refinement.presumed if self.refinement else frozenset()
+        return self.refinement.in_use if self.refinement else frozenset()
 
     @property
     def children(self) -> tuple[Child, ...]:
@@ -89,7 +88,7 @@ class Model:
     root: Situation
     names: Names = field(default_factory=Names)
     segments: dict[Situation, Segment] = field(default_factory=dict)
-    uses: Counter[str] = field(default_factory=Counter)
+    uses: dict[str, int] = field(default_factory=dict)  # assumption → segments that rest on it or bring it in
     _calls: dict[Situation, dict[Situation, tuple[Child, ...]]] = field(default_factory=dict)
     _versions: dict[Situation, int] = field(default_factory=dict)
 
@@ -111,7 +110,8 @@ class Model:
         self._forget(segment)
         segment.refinement = refinement
         self.segments[segment.situation] = segment
-        self.uses.update(segment.in_use)
+        for assumption in segment.in_use:
+            self.uses[assumption] = self.uses.get(assumption, 0) + 1
         calls: dict[Situation, list[Child]] = {}
         for child in segment.children:
             calls.setdefault(child.situation, []).append(child)
@@ -129,7 +129,10 @@ class Model:
 
     def _forget(self, segment: Segment) -> None:
         if segment.situation in self.segments:
-            self.uses.subtract(segment.in_use)
+            for assumption in segment.in_use:
+                self.uses[assumption] -= 1
+                if not self.uses[assumption]:
+                    del self.uses[assumption]
             for child in segment.children:
                 self._calls[child.situation].pop(segment.situation, None)
 
@@ -191,7 +194,7 @@ class Model:
 
     def used(self) -> list[str]:
         """The assumptions in use."""
-        return [assumption for assumption, count in self.uses.items() if count > 0]
+        return list(self.uses)
 
     def snapshot(self, situations: Iterable[Situation]) -> list[tuple[Situation, Segment | None]]:
         """What is recorded of these, to be `restored` if an adaptation is not applied."""

@@ -19,6 +19,7 @@ from planner_reactor.link.messages import Mode, Perception
 from planner_reactor.logic.domain import Domain
 from planner_reactor.logic.formulas import Atom
 from planner_reactor.planner.agenda import ACTIVE_STUB, FAILED_ASSUMPTION, FAILED_SITUATION, QUIESCENT
+from planner_reactor.planner.foresight import Foresight
 from planner_reactor.planner.goals import chosen_goal
 from planner_reactor.planner.issuing import Issuer
 from planner_reactor.planner.model import Model
@@ -38,7 +39,7 @@ class Planner:
     `relax` says which assumptions may be relaxed without need: all, those named, or none; with none, failed
     ones are not relaxed either. `period_ms` replaces the domain's periods of monitors. With `fold` constant
     arguments become part of a situation's name, else a situation has parameters and several instances at
-    once.
+    once. With `foresight` it thinks ahead when there is nothing else to do, so that a failure finds it prepared.
     """
 
     def __init__(
@@ -53,6 +54,7 @@ class Planner:
         fold: bool = True,
         epoch: int = 0,
         patience: int | None = None,
+        foresight: bool = False,
     ) -> None:
         self.domain = domain
         self.goal = chosen_goal(domain, goal)
@@ -63,6 +65,7 @@ class Planner:
         self._assuming = Assuming(domain, relax)
         self._issuer = Issuer(self.model, fold, stub_ms, period_ms, mode, epoch)
         self._reducer = Reducer(self.goal, Theory(domain), self.model, self._issuer, self._assuming, self._counts)
+        self._foresight = Foresight(self._reducer) if foresight else None
 
     # ------------------------------------------------------------------------------------- what it tells
 
@@ -120,7 +123,14 @@ class Planner:
 
         None if there is nothing to do until something is perceived.
         """
-        return self._reducer.step() or self._watch() or self._reinstate() or self._relax_next()
+        return self._reducer.step() or self._watch() or self._reinstate() or self._relax_next() or self._think_ahead()
+
+    def _think_ahead(self) -> Step | None:
+        """Nothing is to be done: work out what would be, were the next assumption to fail."""
+        if self._foresight is None or not self._reducer.is_done:
+            return None
+        name = self._foresight.step(self.assumptions_in_use)
+        return None if name is None else Step("foresee", assumption=name, purpose=f"foresee being without {name}")
 
     def _watch(self) -> Step | None:
         """Monitors and perception requests that belong to no situation."""

@@ -105,21 +105,37 @@ class Reducer:
         return f"{verb} {about.assumption}: {segment.name}", about.assumption
 
     def _work_on(self, draft: Draft) -> Step:
-        situation = draft.waiting[0] if draft.waiting else draft.segment.situation
-        if situation not in draft.refinements:
-            refinement = self._refine(situation, draft)
-            if refinement is None:
-                draft.laborious = True
-                return self._step("refine", draft)
-            if refinement.composition is None:
-                if not draft.fail(situation):
-                    self._give_up(draft.segment, refinement)
-                return self._step("refine", draft)
+        """Work on a draft until it is issued, nothing more can be done about it, or so much is done as is
+        done in one step.
+        """
+        left = UNITS
+        while left > 0:
+            situation = draft.waiting[0] if draft.waiting else draft.segment.situation
+            if situation in draft.refinements:
+                if left < UNITS and draft.size > UNITS:
+                    break  # so much is issued that it is a step of its own
+                self._count(UNITS - left)
+                return self._finish(draft)
+            refinement, left = self._refine(situation, draft, left)
+            if refinement is not None and not self._take(draft, refinement):
+                break
+        self._count(UNITS - left)
+        return self._step("refine", draft)
+
+    def _count(self, units: int) -> None:
+        self.counts["units"] += units
+        self.counts["longest_step"] = max(self.counts["longest_step"], units)
+
+    def _take(self, draft: Draft, refinement: Refinement) -> bool:
+        """Put a refinement into the draft; False if that was the end of the draft."""
+        situation = refinement.situation
+        if refinement.composition is not None:
             draft.drafted.add(refinement)
             draft.waiting = [*self._to_refine(draft, refinement), *draft.waiting[1:]]
-            if draft.waiting or draft.laborious:
-                return self._step("refine", draft)
-        return self._finish(draft)
+        elif not draft.fail(situation):
+            self._give_up(draft.segment, refinement)
+            return False
+        return True
 
     def _to_refine(self, draft: Draft, refinement: Refinement) -> list[Situation]:
         """Which new sub-situations must be concrete at once."""
@@ -135,14 +151,15 @@ class Reducer:
         """Issue the adaptation that a draft amounts to, unless something that it touches is held."""
         self._draft = None
         segment = draft.segment
-        touched = self.issuer.touched_by(draft)
+        difference = self.issuer.difference(draft)
+        touched = difference.touched
         holder = self.issuer.holder(touched)
         if holder is not None:
             self._agenda.set_aside(segment, holder)
             return self._step("refine", draft)
         below = [child.situation for child in segment.children]
         below += [c.situation for r in draft.refinements.values() for c in r.children if c.situation not in touched]
-        adaptation = self.issuer.issue(draft, touched, self.assuming.beliefs, self.assuming.watched)
+        adaptation = self.issuer.issue(draft, difference, self.assuming.beliefs, self.assuming.watched)
         segment.stale, segment.urgency, segment.asked = False, QUIESCENT, ()
         for situation in draft.refinements:
             issued = self.model.segments[situation]
@@ -178,22 +195,24 @@ class Reducer:
 
     # ----------------------------------------------------------------------------------------- refinement
 
-    def _refine(self, situation: Situation, draft: Draft) -> Refinement | None:
-        """The refinement, from memory or worked out now; None if that takes more than this step."""
+    def _refine(self, situation: Situation, draft: Draft, units: int) -> tuple[Refinement | None, int]:
+        """The refinement, from memory or worked out now, and how many of the units are left; None if
+        they were not enough.
+        """
         if draft.thought is None:
             context, beliefs = self._context(situation, draft), self.assuming.beliefs
             key = self.memory.key(situation, context, beliefs)
             known = self.memory.recall(key, situation, beliefs)
             if known is not None:
-                return known
+                return known, units - 1
             schema = self._root if situation == self.model.root else self.theory.domain.schemas[situation.schema]
             draft.thought = key, refining(self.theory, beliefs, schema, situation, context, fold=self.issuer.fold)
         key, work = draft.thought
-        found = advance(work, UNITS)
+        found, left = advance(work, units)
         if found is not None:
             draft.thought = None
             self.memory.keep(key, found)
-        return found
+        return found, left
 
     def _context(self, situation: Situation, draft: Draft) -> Context:
         if situation == draft.segment.situation:

@@ -81,6 +81,7 @@ class _Refining:
             frozenset(self.consulted.blocked),
             tuple(dict.fromkeys(self.warnings)),
             self.consulted.gave_up,
+            frozenset(self.presumed | self.required),
         )
 
     # ------------------------------------------------------------------------------------- the problem

@@ -83,6 +83,10 @@ class Sheets:
     _reactions: dict[int, tuple[Composition, Sheet]] = field(default_factory=dict)
     _stubs: dict[tuple[int, int], Sheet] = field(default_factory=dict)
 
+    def share(self, other: Sheets) -> None:
+        """Use the sheets of another, which may have other names."""
+        self._reactions, self._stubs = other._reactions, other._stubs
+
     def reaction(self, refinement: Refinement) -> str:
         """The reaction of a refined situation."""
         composition = refinement.composition

@@ -7,8 +7,10 @@ everything that follows for others: its sub-situations, what it rests on, what h
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import lru_cache
 
 import msgspec
+from msgspec.structs import replace
 
 from planner_reactor.logic.formulas import Atom, Numeral, Term
 from planner_reactor.planner.beliefs import all_in_doubt, some_in_doubt
@@ -84,6 +86,7 @@ class Refinement(msgspec.Struct, frozen=True):
     blocked: frozenset[str] = frozenset()
     warnings: tuple[str, ...] = ()
     gave_up: bool = False
+    in_use: frozenset[str] = frozenset()  # what it rests on or brings in
     exchanged: dict[Term, Term] = {}
 
     @property
@@ -126,25 +129,22 @@ class Refinement(msgspec.Struct, frozen=True):
     def renamed(self, constants: dict[Term, Term]) -> Refinement:
         """The same refinement for constants that the domain does not tell apart."""
         assert not self.exchanged
-        asked = tuple([Atom(a.predicate, tuple([constants.get(t, t) for t in a.arguments])) for a in self.asked])
-        return Refinement(
-            self.situation.renamed(constants),
-            self.composition,
-            tuple([child.renamed(constants) for child in self.children]),
-            _renamed_names(self.required, constants),
-            _renamed_names(self.presumed, constants),
-            _renamed_names(self.missing, constants),
-            asked,
-            self.blocked,
-            self.warnings,
-            self.gave_up,
-            constants,
+        return replace(
+            self,
+            situation=self.situation.renamed(constants),
+            children=tuple([child.renamed(constants) for child in self.children]),
+            required=_renamed_names(self.required, constants),
+            presumed=_renamed_names(self.presumed, constants),
+            missing=_renamed_names(self.missing, constants),
+            in_use=_renamed_names(self.in_use, constants),
+            asked=tuple([Atom(a.predicate, tuple([constants.get(t, t) for t in a.arguments])) for a in self.asked]),
+            exchanged=constants,
         )
 
 
 def _renamed_names(names: frozenset[str], constants: Mapping[Term, Term]) -> frozenset[str]:
     """Names of assumptions, those with arguments for other constants."""
-    if not any("(" in name for name in names):
+    if not _speak_of_constants(names):
         return names
     found = set()
     for name in names:
@@ -153,6 +153,11 @@ def _renamed_names(names: frozenset[str], constants: Mapping[Term, Term]) -> fro
             name = f"{whole}({','.join(str(constants.get(a, a)) for a in arguments[:-1].split(','))})"
         found.add(name)
     return frozenset(found)
+
+
+@lru_cache(4096)
+def _speak_of_constants(names: frozenset[str]) -> bool:
+    return any("(" in name for name in names)
 
 
 def situation_of(action: Action, *, fold: bool) -> Situation:

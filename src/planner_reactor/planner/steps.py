@@ -10,7 +10,7 @@ from planner_reactor.link.messages import Adaptation
 
 Relax: TypeAlias = "Literal['all', 'none'] | tuple[str, ...]"
 Cause: TypeAlias = Literal["normal", "forced"]
-StepKind: TypeAlias = Literal["refine", "relax", "reinstate", "watch"]
+StepKind: TypeAlias = Literal["refine", "relax", "reinstate", "watch", "foresee"]
 
 
 class Step(msgspec.Struct, frozen=True):

@@ -15,15 +15,16 @@ _T = TypeVar("_T")
 Work: TypeAlias = Generator[None, None, _T]
 
 
-def advance(work: Work[_T], units: int) -> _T | None:
-    """Do at most so many units; what the work came to if it is done, else None."""
+def advance(work: Work[_T], units: int) -> tuple[_T | None, int]:
+    """Do at most so many units: what the work came to if it is done, else None, and the units that are left."""
     try:
-        for _ in range(units):
+        while units > 0:
+            units -= 1
             next(work)
     except StopIteration as done:
         result: _T = done.value
-        return result
-    return None
+        return result, units
+    return None, 0
 
 
 def finish(work: Work[_T]) -> _T:

@@ -1,0 +1,55 @@
+"""Thinking ahead: what the reactor would have to be without one assumption more, worked out while there is time.
+
+When nothing else is to be done, the reactor for each set of assumptions that could be next is planned to the
+end, against a model that stands for no reactor. Nothing is issued; what was worked out stays in memory, so that
+the failure of an assumption finds its refinements ready, and what is left to do is to issue them.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+
+from planner_reactor.planner.beliefs import Beliefs
+from planner_reactor.planner.issuing import Issuer
+from planner_reactor.planner.model import Model
+from planner_reactor.planner.reducing import Reducer
+from planner_reactor.planner.relaxing import Assuming
+
+
+@dataclass(slots=True)
+class Foresight:
+    """Plans for what `reducer` may have to plan next; `foreseen` are the beliefs that it has planned for."""
+
+    reducer: Reducer
+    foreseen: set[Beliefs] = field(default_factory=set)
+    _shadow: Reducer | None = None
+    _about: str = ""
+
+    def step(self, in_use: Iterable[str]) -> str | None:
+        """One short piece of work; the assumption that it was about, or None if there is nothing left to foresee."""
+        while self._shadow is None:
+            beliefs = self.reducer.assuming.beliefs
+            name = next((n for n in in_use if beliefs.without(n) not in self.foreseen), None)
+            if name is None:
+                return None
+            self._shadow, self._about = self._without(beliefs.without(name)), name
+        step = self._shadow.step()
+        if step is None:
+            self._shadow = None
+        else:
+            for adaptation in step.adaptations:
+                self._shadow.applied(adaptation.id)
+        return self._about
+
+    def _without(self, beliefs: Beliefs) -> Reducer:
+        self.foreseen.add(beliefs)
+        actual = self.reducer
+        issuer = Issuer(Model(actual.model.root), actual.issuer.fold, actual.issuer.stub_ms, None, actual.issuer.mode)
+        issuer.sheets.share(actual.issuer.sheets)
+        assuming = Assuming(actual.theory.domain, "none")
+        assuming.beliefs = beliefs
+        shadow = Reducer(actual.goal, actual.theory, issuer.model, issuer, assuming, Counter())
+        shadow.memory = actual.memory
+        return shadow

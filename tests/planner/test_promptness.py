@@ -1,0 +1,102 @@
+"""No step is long, and what a change costs follows what changes: counted in units of work, not in time."""
+
+from __future__ import annotations
+
+import pytest
+
+from planner_reactor.planner import Planner
+from planner_reactor.planner.reducing import UNITS
+from tests.planner.driving import Book, first_adaptations, kitting, perception, planner_without, settle, texts
+from tests.planner.test_altered_domains import with_kinds
+
+NINE = ("AQ", "AS", "AF", "ACT", "ACP", "ADT", "AM", "ADD", "AO")
+
+
+def planned(count: int, **options: object) -> tuple[Planner, Book]:
+    """A planner for so many kinds that has issued everything, and what it has come to."""
+    domain = with_kinds(*(f"p{n}" for n in range(count)))
+    planner, book = Planner(domain, **{"relax": (), **options}), Book(domain, loads=False)  # type: ignore[arg-type]
+    settle(planner, book, most=20_000)
+    return planner, book
+
+
+def units(planner: Planner) -> int:
+    return planner.statistics()["units"]
+
+
+def test_no_step_does_more_than_its_share_of_work() -> None:
+    planner, _ = planned(60, relax="all")
+    assert planner.ideal
+    assert not planner.assumptions_in_use
+    assert 0 < planner.statistics()["longest_step"] <= UNITS
+
+
+def test_the_first_adaptation_takes_as_little_with_many_kinds_as_with_few() -> None:
+    few, many = (Planner(with_kinds(*(f"p{n}" for n in range(count)))) for count in (3, 100))
+    first_adaptations(few, 1)
+    first_adaptations(many, 1)
+    assert units(few) == units(many)
+
+
+@pytest.mark.parametrize("name", NINE)
+def test_what_a_relaxation_takes_follows_what_it_changes(name: str) -> None:
+    """Three units at most for each situation that changes, and a constant that no number of kinds raises."""
+    taken = []
+    for count in (10, 40):
+        planner, book = planned(count)
+        before = units(planner)
+        planner.perceive(perception("assumption_failure", name))
+        changes = sum(len(adaptation.changes) for adaptation in settle(planner, book))
+        taken.append((units(planner) - before, changes))
+    (few, changed_few), (many, changed_many) = taken
+    assert many - few <= 6 * (changed_many - changed_few)
+
+
+def test_a_perception_in_the_middle_of_a_thought_is_acted_on_in_the_next_step() -> None:
+    planner, _ = planned(40)
+    planner.perceive(perception("assumption_failure", "ADT"))
+    step = planner.step()
+    while step is not None and step.situation != "FillTray":  # takes several steps
+        for adaptation in step.adaptations:
+            planner.perceive(perception("adaptation_applied", str(adaptation.id)))
+        step = planner.step()
+    planner.perceive(perception("situation_failure", "LacksP7"))
+    step = planner.step()
+    assert step is not None
+    assert step.situation == "LacksP7"
+
+
+@pytest.mark.parametrize("name", NINE)
+def test_what_was_foreseen_is_not_worked_out_when_it_happens(name: str) -> None:
+    planner, _ = planned(5, foresight=True)
+    before = planner.statistics()["refinements"]
+    planner.perceive(perception("assumption_failure", name))
+    assert first_adaptations(planner, 1)
+    step = planner.step()
+    while step is not None and step.kind != "foresee":
+        for adaptation in step.adaptations:
+            planner.perceive(perception("adaptation_applied", str(adaptation.id)))
+        step = planner.step()
+    assert planner.statistics()["refinements"] == before
+
+
+def test_thinking_ahead_issues_nothing_and_comes_to_an_end() -> None:
+    domain = kitting()
+    plain, ahead = Planner(domain, relax=()), Planner(domain, relax=(), foresight=True)
+    assert [a.definitions for a in settle(plain)] == [a.definitions for a in settle(ahead)]
+    assert ahead.step() is None
+
+
+def test_a_reaction_filled_in_is_the_reaction_written_for_itself() -> None:
+    """The sheet of one kind serves for the others; each alone would have been written the same."""
+    names = ("motor", "cap", "body")
+    together = texts(planner_of(with_kinds(*names)))
+    for name in names:
+        alone = texts(planner_of(with_kinds(name)))
+        assert together[f"Lacks{name.title()}"] == alone[f"Lacks{name.title()}"]
+
+
+def planner_of(domain: object) -> Planner:
+    planner = planner_without(domain, ["AQ", "ACP"])  # type: ignore[arg-type]
+    settle(planner)
+    return planner
