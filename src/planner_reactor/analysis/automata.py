@@ -1,146 +1,134 @@
-"""From a formula to an automaton that accepts exactly its runs (generalised Büchi, acceptance on transitions).
+"""A network without time as automata: each cell's table of moves, complete for whatever the other cells may offer.
 
-A state is the set of formulas that the rest of the run has to make true. Reading a moment, each of them is taken apart
-into what must be true now and what must be true from the next moment on; an `until` may be put off, but not for ever: a
-run is accepted if each is fulfilled, or not asked, again and again. The tableau is Couvreur's (FM 1999).
+`Automata` is what reduction, enumeration by bits and the export to Promela work on: no term is looked at any more. A
+table may hold states that the cell reaches only with partners that never offer what it waits for; who composes the
+tables again (we, or SPIN) finds out.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator
+from math import inf
 from typing import TypeAlias
 
 import msgspec
 
-from planner_reactor.analysis.observing import Atom
-from planner_reactor.analysis.temporal import (
-    Both,
-    Either,
-    Formula,
-    Here,
-    Negation,
-    Next,
-    Release,
-    Truth,
-    Until,
-    normal,
-    parts,
-)
+from planner_reactor.analysis.cells import Cell
+from planner_reactor.analysis.networks import Network, Vector, met_label
+from planner_reactor.errors import PlannerReactorError
+from planner_reactor.rs.configurations import Label
+from planner_reactor.rs.terms import Value
 
-Duties: TypeAlias = frozenset[Formula]
+Half: TypeAlias = tuple[Value, Value, int]
+"""(port, value, next state): one side of a rendezvous."""
 
 
-class Edge(msgspec.Struct, frozen=True):
-    """Taken at a moment at which all atoms of `true` and none of `false` are true; bits as in the automaton's atoms.
-
-    `kept` has a bit for each `until` that this edge does not put off.
-    """
-
-    true: int
-    false: int
-    after: int
-    kept: int
-
-    def reads(self, seen: int) -> bool:
-        return seen & self.true == self.true and not seen & self.false
+class Timed(PlannerReactorError):
+    """Time passes in this network: its cells do not move one by one."""
 
 
 class Automaton(msgspec.Struct, frozen=True):
-    """States 0, 1, …, from 0; a run is accepted if each bit of `all_kept` comes again and again."""
+    """One cell: from each state its own moves, what it would write, what it would read; and where it is over."""
 
-    edges: tuple[tuple[Edge, ...], ...]
-    all_kept: int
+    own: tuple[tuple[tuple[Label, int], ...], ...]
+    writes: tuple[tuple[Half, ...], ...]
+    reads: tuple[tuple[Half, ...], ...]
+    over: tuple[bool, ...]
 
+    def __len__(self) -> int:
+        return len(self.own)
 
-class _Way(msgspec.Struct, frozen=True):
-    """One way to read a moment: what must be true now, what from then on, what is put off."""
-
-    true: int = 0
-    false: int = 0
-    later: Duties = frozenset()
-    put_off: Duties = frozenset()
-
-    def covers(self, other: _Way) -> bool:
-        """Does it accept whatever the other accepts?"""
-        return (
-            self.true & other.true == self.true
-            and self.false & other.false == self.false
-            and self.later <= other.later
-            and self.put_off <= other.put_off
-        )
+    def after(self, state: int) -> Iterator[int]:
+        """Every state that may be next, whatever the others do."""
+        for _, s in self.own[state]:
+            yield s
+        for half in (*self.writes[state], *self.reads[state]):
+            yield half[2]
 
 
-def automaton(formula: Formula, atoms: Sequence[Atom]) -> Automaton:
-    """The automaton of a formula; bit n of a moment is the n-th atom."""
-    formula = normal(formula)
-    bits = {atom: 1 << number for number, atom in enumerate(atoms)}
-    untils = {until: 1 << number for number, until in enumerate(dict.fromkeys(_untils(formula)))}
-    everything = (1 << len(untils)) - 1
-    states: dict[Duties, int] = {frozenset({formula}): 0}
-    edges: list[tuple[Edge, ...]] = []
-    waiting = list(states)
-    for duties in waiting:  # grows while it is read
-        found = []
-        for way in _ways(duties, bits):
-            if way.later not in states:
-                states[way.later] = len(states)
-                waiting.append(way.later)
-            kept = everything & ~sum(untils[until] for until in way.put_off)
-            found.append(Edge(way.true, way.false, states[way.later], kept))
-        edges.append(tuple(found))
-    return Automaton(tuple(edges), everything)
+class Automata(msgspec.Struct, frozen=True):
+    """The cells of a network; a state is a vector of their states, and the first is all zeros."""
+
+    cells: tuple[Automaton, ...]
+
+    @property
+    def start(self) -> Vector:
+        return (0,) * len(self.cells)
+
+    def moves(self, vector: Vector) -> Iterator[tuple[Label, Vector]]:
+        """Every move of the composition."""
+        for n, (cell, state) in enumerate(zip(self.cells, vector, strict=True)):
+            for label, s in cell.own[state]:
+                yield label, (*vector[:n], s, *vector[n + 1 :])
+        for _, _, label, met in self.meetings(vector, range(len(vector))):
+            yield label, met
+
+    def meetings(self, vector: Vector, among: Iterable[int]) -> Iterator[tuple[int, int, Label, Vector]]:
+        """Every rendezvous of two of these cells: writer, reader, label, vector afterwards."""
+        members = list(among)
+        for w in members:
+            for port, value, written in self.cells[w].writes[vector[w]]:
+                for r in members:
+                    if r == w:
+                        continue
+                    for at, what, read in self.cells[r].reads[vector[r]]:
+                        if at == port and what == value:
+                            after = list(vector)
+                            after[w], after[r] = written, read
+                            yield w, r, met_label(port, value), tuple(after)
+
+    def over(self, vector: Vector) -> bool:
+        return all(cell.over[state] for cell, state in zip(self.cells, vector, strict=True))
+
+    def linked(self, one: int, other: int) -> bool:
+        """Can these two cells ever meet?"""
+        left, right = self.cells[one], self.cells[other]
+        return bool(halves(left.writes) & halves(right.reads)) or bool(halves(left.reads) & halves(right.writes))
 
 
-def _untils(formula: Formula) -> list[Formula]:
-    found = [until for part in parts(formula) for until in _untils(part)]
-    return [formula, *found] if isinstance(formula, Until) else found
+def halves(table: tuple[tuple[Half, ...], ...]) -> set[tuple[Value, Value]]:
+    return {(port, value) for row in table for port, value, _ in row}
 
 
-def _ways(duties: Duties, bits: dict[Atom, int]) -> list[_Way]:
-    """Every way to read a moment with these duties, without those that another covers."""
-    found: list[_Way] = []
-    waiting: list[tuple[tuple[Formula, ...], _Way]] = [(_sorted(duties), _Way())]
-    while waiting:
-        todo, way = waiting.pop()
-        if not todo:
-            if not way.true & way.false:
-                found.append(way)
-            continue
-        waiting += [((*now, *todo[1:]), new) for now, new in _apart(todo[0], way, bits)]
-    found = list(dict.fromkeys(found))
-    return [
-        way for n, way in enumerate(found)
-        if not any(other.covers(way) and (m < n or not way.covers(other)) for m, other in enumerate(found) if m != n)
-    ]  # fmt: skip
+def compiled(network: Network) -> Automata:
+    """The tables of a network. Raises `Timed` where time can pass, `BudgetError` if a cell is too large."""
+    domains: dict[Value, dict[Value, set[int]]] = {}
+    before = -1
+    while before != (before := _extent(network, domains)):
+        for number, cell in enumerate(network.cells):
+            _widened(number, cell, domains)
+    return Automata(tuple(_table(number, cell, domains) for number, cell in enumerate(network.cells)))
 
 
-def _apart(formula: Formula, way: _Way, bits: dict[Atom, int]) -> list[tuple[tuple[Formula, ...], _Way]]:
-    """The ways to make a formula true: what else must be true now, and the way so far with what is read or left."""
-    match formula:
-        case Truth(value):
-            return [((), way)] if value else []
-        case Here(atom):
-            return [((), msgspec.structs.replace(way, true=way.true | bits[atom]))]
-        case Negation(Here(atom)):
-            return [((), msgspec.structs.replace(way, false=way.false | bits[atom]))]
-        case Both(left, right):
-            return [((left, right), way)]
-        case Either(left, right):
-            return [((right,), way), ((left,), way)]
-        case Next(body):
-            return [((), _later(way, body))]
-        case Until(left, right):
-            put_off = msgspec.structs.replace(_later(way, formula), put_off=way.put_off | {formula})
-            return [((left,), put_off), ((right,), way)]
-        case Release(left, right):
-            return [((right,), _later(way, formula)), ((left, right), way)]
-        case _:
-            raise AssertionError(f"not in normal form: {formula}")
+def _extent(network: Network, domains: dict[Value, dict[Value, set[int]]]) -> int:
+    return sum(map(len, network.cells)) + sum(len(cells) for d in domains.values() for cells in d.values())
 
 
-def _later(way: _Way, formula: Formula) -> _Way:
-    return msgspec.structs.replace(way, later=way.later | {formula})
+def _widened(number: int, cell: Cell, domains: dict[Value, dict[Value, set[int]]]) -> None:
+    """Everything that the cell can do with what is offered so far, and what it offers."""
+    for state, _ in enumerate(cell.configs):  # grows while it is read
+        if 0 < cell.pause(state) < inf:
+            raise Timed("time passes in this network")
+        cell.steps(state)
+        for port, value, _ in cell.offered(state):
+            domains.setdefault(port, {}).setdefault(value, set()).add(number)
+        for _ in _readings(number, cell, state, domains):
+            pass
 
 
-def _sorted(duties: Duties) -> tuple[Formula, ...]:
-    return tuple(sorted(duties, key=repr))
+def _readings(number: int, cell: Cell, state: int, domains: dict[Value, dict[Value, set[int]]]) -> Iterator[Half]:
+    for port in cell.ports_read(state):
+        for value, writers in domains.get(port, {}).items():
+            if writers - {number}:
+                for after in cell.taken(state, port, value):
+                    yield port, value, after
+
+
+def _table(number: int, cell: Cell, domains: dict[Value, dict[Value, set[int]]]) -> Automaton:
+    states = range(len(cell))
+    return Automaton(
+        tuple(tuple((label, after) for label, after, _ in cell.steps(s)) for s in states),
+        tuple(cell.offered(s) for s in states),
+        tuple(tuple(_readings(number, cell, s, domains)) for s in states),
+        tuple(cell.over(s) for s in states),
+    )
