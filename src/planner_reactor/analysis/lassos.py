@@ -21,19 +21,24 @@ from planner_reactor.rs.configurations import Label
 NODES = 2_000_000
 """Pairs of a state of the system and one of the automaton that are visited at most."""
 
+ANYHOW: Label = ("", (), "anyhow", ())
+"""Stands for whatever follows when nothing is asked of it any more; fair runs go on from everywhere."""
+
 EFFORT = 300_000
 """Steps spent on making a lasso shorter; beyond, the shortest found so far is taken."""
 
 
 class Lasso(msgspec.Struct, frozen=True):
-    """`prefix` leads to a state from which `cycle` leads back. An empty cycle: the run ends there.
+    """`prefix` leads to a state from which `cycle` leads back. An empty cycle: the run ends there, or, if `decided`, it
+    does not matter how it goes on.
 
-    `states` are the numbers of the states before each step, prefix and cycle.
+    `states` are the numbers of the states before each step, prefix and cycle (of the last state, if there is none).
     """
 
     prefix: tuple[Label, ...]
     cycle: tuple[Label, ...]
     states: tuple[int, ...] = ()
+    decided: bool = False
 
 
 class Justice(msgspec.Struct, frozen=True):
@@ -60,7 +65,7 @@ class Product(msgspec.Struct, frozen=True):
     arcs: Sequence[tuple[Arc, ...]]
     depth: Sequence[int]
     before: Sequence[tuple[int, Move] | None]
-    possible: Sequence[int]  # by state of the system: kinds of steps that are possible there
+    possible: Sequence[int]  # the kinds of steps that are possible at each node
 
 
 def product(system: System, automaton: Automaton, justice: Justice) -> Product:
@@ -75,8 +80,14 @@ def product(system: System, automaton: Automaton, justice: Justice) -> Product:
     numbers = {nodes[0]: 0}
     arcs: list[tuple[Arc, ...]] = []
     depth, before = [0], [None]  # type: tuple[list[int], list[tuple[int, Move] | None]]
+    by_node: list[int] = []
     for here, (state, duties) in enumerate(nodes):  # grows while it is read
         found = []
+        if duties == automaton.free:
+            arcs.append((Arc(here, Move(ANYHOW, state, False, 0), automaton.all_kept, 0),))
+            by_node.append(0)
+            continue
+        by_node.append(possible[state] if state < len(possible) else 0)
         for move, bit in zip(system.leaving(state), taken[state] if state < len(taken) else (), strict=False):
             for edge in automaton.edges[duties]:
                 if not edge.reads(move.seen):
@@ -90,7 +101,7 @@ def product(system: System, automaton: Automaton, justice: Justice) -> Product:
                     before.append((here, move))
                 found.append(Arc(number, move, edge.kept, bit))
         arcs.append(tuple(found))
-    return Product(nodes, arcs, depth, before, possible)
+    return Product(nodes, arcs, depth, before, by_node)
 
 
 def _bit(kind: int) -> int:
@@ -125,20 +136,19 @@ def _fair(both: Product, all_kept: int, justice: Justice) -> Iterable[frozenset[
     while waiting:
         for component in components(both.arcs, waiting.pop()):
             inner = [arc for node in component for arc in both.arcs[node] if arc.after in component]
-            states = [both.nodes[node][0] for node in component]
             taken = _union(arc.taken for arc in inner)
             if not inner or _union(arc.kept for arc in inner) != all_kept:
                 continue
             always = justice.weak
-            for state in states:
-                always &= both.possible[state]
+            for node in component:
+                always &= both.possible[node]
             if always & ~taken:
                 continue
-            missed = _union(both.possible[state] for state in states) & justice.strong & ~taken
+            missed = _union(both.possible[node] for node in component) & justice.strong & ~taken
             if not missed:
                 yield component
             else:
-                waiting.append(frozenset(n for n in component if not both.possible[both.nodes[n][0]] & missed))
+                waiting.append(frozenset(n for n in component if not both.possible[n] & missed))
 
 
 def components(arcs: Sequence[Sequence[Arc]], within: frozenset[int]) -> list[frozenset[int]]:
@@ -236,12 +246,14 @@ class _Shortest:
             at = arc.after
         run = list(zip([*reversed(prefix), *(arc.move.label for arc in cycle)], states, strict=True))
         begin = len(prefix)
+        run = [*run[:begin], *_once(run[begin:])]
         while begin and run[begin - 1] == run[-1]:  # the same run, said with one step less
             begin -= 1
             run.pop()
         labels = tuple(label for label, _ in run)
-        idle = labels[-1][2] == "idle"
-        return Lasso(labels[:begin], () if idle else labels[begin:], tuple(state for _, state in run))
+        at_rest = labels[-1][2] in ("idle", "anyhow")
+        states = [state for _, state in run]
+        return Lasso(labels[:begin], () if at_rest else labels[begin:], tuple(states), labels[-1] == ANYHOW)
 
     def _round(self, start: int, component: frozenset[int]) -> list[Arc] | None:
         """The shortest fair way from a node back to it, breadth first; None if the effort is spent before."""
@@ -263,11 +275,11 @@ class _Shortest:
         return None
 
     def _began(self, node: int) -> _Way:
-        possible = self._both.possible[self._both.nodes[node][0]]
+        possible = self._both.possible[node]
         return _Way(node, 0, possible & self._justice.weak, possible & self._justice.strong, 0)
 
     def _gone(self, way: _Way, arc: Arc) -> _Way:
-        possible = self._both.possible[self._both.nodes[arc.after][0]]
+        possible = self._both.possible[arc.after]
         taken = (way.taken | arc.taken) & self._justice.strong
         missed = (way.missed | possible & self._justice.strong) & ~taken
         return _Way(arc.after, way.kept | arc.kept, way.owed & possible & ~arc.taken, missed, taken)
@@ -280,12 +292,11 @@ class _Shortest:
         way, cycle = self._began(start), list[Arc]()
         while True:
             goal = self._lacking(way)
-            arcs = self._path(way.node, component, goal) if goal is not None else self._path(way.node, component, start)
-            for arc in arcs:
+            if goal is None and cycle and way.node == start:
+                return cycle
+            for arc in self._path(way.node, component, start if goal is None else goal):
                 way = self._gone(way, arc)
                 cycle.append(arc)
-            if goal is None:
-                return cycle
 
     def _lacking(self, way: _Way) -> Callable[[Arc], bool] | None:
         if lacking := self._all_kept & ~way.kept:
@@ -293,10 +304,7 @@ class _Shortest:
         if way.missed:
             return lambda arc: bool(arc.taken & way.missed)
         if way.owed:
-            possible = self._both.possible
-            return lambda arc: bool(
-                arc.taken & way.owed or way.owed & ~possible[self._both.nodes[arc.after][0]]
-            )
+            return lambda arc: bool(arc.taken & way.owed or way.owed & ~self._both.possible[arc.after])
         return None
 
     def _path(self, start: int, component: frozenset[int], goal: Callable[[Arc], bool] | int) -> list[Arc]:
@@ -314,6 +322,12 @@ class _Shortest:
                     before[arc.after] = (node, arc)
                     waiting.append(arc.after)
         raise AssertionError("a component is connected")
+
+
+def _once(cycle: list[tuple[Label, int]]) -> list[tuple[Label, int]]:
+    """A cycle that goes round several times (the automaton tells the rounds apart) once."""
+    lengths = (n for n in range(1, len(cycle) + 1) if len(cycle) % n == 0)
+    return next(cycle[:n] for n in lengths if cycle[:n] * (len(cycle) // n) == cycle)
 
 
 def _back(before: dict[_Way, tuple[_Way, Arc] | None], way: _Way) -> list[Arc]:

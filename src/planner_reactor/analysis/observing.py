@@ -29,8 +29,12 @@ class Atom(msgspec.Struct, frozen=True):
     arguments: tuple[Value, ...] | None = None
 
     def __str__(self) -> str:
-        called = f"{self.word} {self.name}" if self.name != "" else self.word
-        return called if self.arguments is None else f"{called}[{', '.join(map(str, self.arguments))}]"
+        called = f"{self.word} {_shown(self.name)}" if self.name != "" else self.word
+        return called if self.arguments is None else f"{called}[{', '.join(map(_shown, self.arguments))}]"
+
+
+def _shown(value: Value) -> str:
+    return f'"{value}"' if isinstance(value, str) and not value.isidentifier() else str(value)
 
 
 STATES: dict[str, tuple[Subject, str]] = {

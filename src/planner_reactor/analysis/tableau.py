@@ -46,10 +46,13 @@ class Edge(msgspec.Struct, frozen=True):
 
 
 class Automaton(msgspec.Struct, frozen=True):
-    """States 0, 1, …, from 0; a run is accepted if each bit of `all_kept` comes again and again."""
+    """States 0, 1, …, from 0; a run is accepted if each bit of `all_kept` comes again and again. In the state `free`,
+    if there is one, nothing is asked any more: whatever comes is accepted.
+    """
 
     edges: tuple[tuple[Edge, ...], ...]
     all_kept: int
+    free: int | None = None
 
 
 class _Way(msgspec.Struct, frozen=True):
@@ -88,7 +91,7 @@ def automaton(formula: Formula, atoms: Sequence[Atom]) -> Automaton:
             kept = everything & ~sum(untils[until] for until in way.put_off)
             found.append(Edge(way.true, way.false, states[way.later], kept))
         edges.append(tuple(found))
-    return Automaton(tuple(edges), everything)
+    return Automaton(tuple(edges), everything, states.get(frozenset()))
 
 
 def _untils(formula: Formula) -> list[Formula]:

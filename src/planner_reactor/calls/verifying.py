@@ -33,8 +33,9 @@ def verify(
     `properties` are in the notation of `analysis.notation`; at most `limit` states are looked at. Returns
     `deadlock_free` and `zeno_free` (None: not decided within the limit), `properties` (each with `property`, `holds`,
     `counterexample`, `cycle`), `refuted` (what was refuted first, or None), its `counterexample` (the steps) and
-    `cycle` (how many of them, at the end, go round for ever), `states` and `complete`. Raises SourceError for a wrong
-    text or property, InputError for a wrong argument.
+    `cycle` (how many of them, at the end, go round for ever), `then` (what follows them: "round", "nothing", or
+    "anything", as all is decided), `states` and `complete`. Raises SourceError for a wrong text or property, InputError
+    for a wrong argument.
     """
     limit = whole("limit", limit, 1)
     asked = subject(file, process, host=host)
@@ -63,8 +64,9 @@ def _first_refuted(verdicts: Iterable[tuple[str, Verdict]]) -> dict[str, Any]:
 
 def _shown(found: Lasso | None) -> dict[str, Any]:
     if found is None:
-        return {"counterexample": [], "cycle": 0}
-    return {"counterexample": list(_steps(found)), "cycle": len(found.cycle)}
+        return {"counterexample": [], "cycle": 0, "then": None}
+    then = "round" if found.cycle else "anything" if found.decided else "nothing"
+    return {"counterexample": list(_steps(found)), "cycle": len(found.cycle), "then": then}
 
 
 def _steps(found: Lasso) -> Iterator[str]:

@@ -54,14 +54,14 @@ def _show(result: dict[str, Any]) -> None:
         print(f"{name}: {VERDICTS[verdict]}")
     if result["refuted"] is not None:
         print(f"counterexample to {result['refuted']}:")
-        _show_steps(result["counterexample"], result["cycle"])
+        _show_steps(result["counterexample"], result["cycle"], result["then"])
     print(f"{result['states']} states" + ("" if result["complete"] else ", and more that were not looked at"))
 
 
-def _show_steps(steps: list[str], cycle: int) -> None:
+def _show_steps(steps: list[str], cycle: int, then: str) -> None:
     for number, step in enumerate(steps, 1):
         if number == len(steps) - cycle + 1:
-            print("  and then for ever:")
+            print("  and then for ever")
         print(f"  {number:3}  {step}")
-    if not cycle:
-        print("       and then nothing more can happen")
+    if then == "nothing":
+        print("  and then nothing more can happen")
