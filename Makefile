@@ -31,8 +31,8 @@ bench: $(VENV)/bench.done  ## our figures beside those of our peers, in one run
 docs: $(VENV)/dev.done  ## the pages of docs/ that are made from code
 	$(BIN)/python -m pytest -q tests/test_docs.py tests/test_examples.py
 
-conformance: $(VENV)/dev.done  ## a long run of random programs, executer against semantics
-	CONFORMANCE_PROGRAMS=20000 $(BIN)/python -m pytest -n 2 --timeout 600 tests/test_conformance.py
+conformance: $(VENV)/dev.done  ## a million random programs, executer against semantics; resumes where it stopped
+	$(BIN)/python -m tests.conformance
 
 clean:  ## forget what was made
 	rm -rf out $(VENV) .pytest_cache .mypy_cache .ruff_cache .hypothesis .import_linter_cache

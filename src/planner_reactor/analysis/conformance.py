@@ -29,10 +29,11 @@ class Disagreement(PlannerReactorError):
 
 
 class Follower:
-    """Follows one run of some processes that were started together."""
+    """Follows one run of some processes that were started together, in at most `most` configurations at once."""
 
-    def __init__(self, processes: Iterable[Process], world: World) -> None:
+    def __init__(self, processes: Iterable[Process], world: World, *, most: int = MOST) -> None:
         self._world = world
+        self._most = most
         config = Config()
         for process in processes:
             config = started(process, world, config=config)
@@ -48,7 +49,7 @@ class Follower:
         if not after:
             offered = sorted({str(s.label) for c in self.configs for s in steps(c, self._world)})
             raise Disagreement(f"step {self.steps + 1}: saw {label}, allowed: {'; '.join(offered) or 'nothing'}")
-        if len(after) > MOST:
+        if len(after) > self._most:
             raise BudgetError("configurations", f"step {self.steps + 1}: the run may be in {len(after)} states")
         self.configs = after
         self.steps += 1

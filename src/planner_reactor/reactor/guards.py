@@ -66,6 +66,7 @@ class Guards:
         self._notice = notice
         self._by_label: dict[Value, Guarded] = {}
         self._by_strand: dict[Strand, Guarded] = {}
+        self._refused: dict[Strand, Guarded] = {}  # their label was in use when they came to life
         self._killing: dict[Strand, Guarded] = {}
         self._adders: deque[Strand] = deque()
         self._posters: dict[Strand, Value] = {}
@@ -82,14 +83,18 @@ class Guards:
         return tuple(self._by_label)
 
     def set_up(self, guarded: Guarded) -> None:
-        if guarded.label not in self._by_label:
-            self._by_label[guarded.label] = guarded
-            self._by_strand[guarded.strand] = guarded
-            self._notice("added", label=guarded.label)
+        if guarded.label in self._by_label:
+            self._refused[guarded.strand] = guarded
+            return
+        self._by_label[guarded.label] = guarded
+        self._by_strand[guarded.strand] = guarded
+        self._notice("added", label=guarded.label)
 
     def waits(self, strand: Strand) -> Outcome | None:
+        if (late := self._refused.pop(strand, None)) is not None and late.label not in self._by_label:
+            self.set_up(late)
         guarded = self._by_strand.get(strand)
-        if guarded is None:  # its label was in use: it guards nothing
+        if guarded is None:  # its label is in use, or it stands in no `#`: it guards nothing
             return ERROR
         guarded.waiting = True
         self._retry(guarded)
@@ -97,6 +102,7 @@ class Guards:
 
     def over(self, strand: Strand) -> None:
         """What it guards has ended by itself, or the whole was aborted."""
+        self._refused.pop(strand, None)
         guarded = self._by_strand.pop(strand, None)
         if guarded is not None:
             del self._by_label[guarded.label]
