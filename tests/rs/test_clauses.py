@@ -57,3 +57,8 @@ def test_names_of_basic_and_built_in_processes_are_taken() -> None:
 def test_many_clauses_are_compared_by_look_up() -> None:
     program = parse_program("\n".join(f"P[{n}] = Delay[{n}]" for n in range(2000)))
     assert [f for f in check(program) if f.severity == "error"] == []
+
+
+def test_clauses_with_constants_at_different_places_exclude_each_other() -> None:
+    text = 'P[x, "a"] = Act[x]\nP["b", "c"] = Act[1]\nP["d", "c"] = Act[2]\nP["b", "a"] = Act[3]'
+    assert places(text, "overlapping-clauses") == [(4, 1)]

@@ -49,7 +49,8 @@ def _overlaps(linked: Linked, numbers: list[int]) -> Iterator[Diagnostic]:
         for number in by_pattern[one] if one != other else ():
             first.setdefault(_values(linked, number, common), number)
         for number in by_pattern[other]:
-            earlier = first.setdefault(_values(linked, number, common), number)
+            values = _values(linked, number, common)  # two of one pattern are compared with all their constants
+            earlier = first.setdefault(values, number) if one == other else first.get(values, number)
             if earlier != number:
                 found.setdefault(max(earlier, number), min(earlier, number))
     for later, earlier in sorted(found.items()):
