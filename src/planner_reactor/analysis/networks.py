@@ -17,7 +17,7 @@ from msgspec.structs import replace
 
 from planner_reactor.analysis.cells import Cell, kept_alive
 from planner_reactor.analysis.explore import canonical, renumbered
-from planner_reactor.analysis.footprints import ANY, Thing, footprint, meet
+from planner_reactor.analysis.footprints import ANY, Footprint, footprint
 from planner_reactor.rs.configurations import Config, Label, World
 from planner_reactor.rs.evolves import terminate
 from planner_reactor.rs.states import Bindings, Ended, Export, Group, InstanceNumber, Keep, Path, Run, parts_of, put
@@ -36,18 +36,29 @@ class Part(msgspec.Struct, frozen=True):
     root: int
     path: Path
     term: Run
-    things: frozenset[Thing]
+    footprint: Footprint
 
 
 class Network:
-    """The cells of a configuration. `start` is the vector of their first states."""
+    """The cells of a configuration. `start` is the vector of their first states.
 
-    def __init__(self, config: Config, world: World, groups: Sequence[Sequence[Part]], *, limit: int) -> None:
+    `elsewhere` are roots that have parts which belong to none of the groups.
+    """
+
+    def __init__(
+        self,
+        config: Config,
+        world: World,
+        groups: Sequence[Sequence[Part]],
+        *,
+        elsewhere: frozenset[int] = frozenset(),
+        limit: int,
+    ) -> None:
         homes: dict[int, set[int]] = {}
         for number, group in enumerate(groups):
             for part in group:
                 homes.setdefault(part.root, set()).add(number)
-        split = frozenset(root for root, cells in homes.items() if len(cells) > 1)
+        split = frozenset(root for root, cells in homes.items() if len(cells) > 1) | elsewhere
         self.config = config
         self.world = world
         self.groups = groups
@@ -159,20 +170,30 @@ def _side_by_side(term: Run, path: Path) -> Iterator[tuple[Path, Run]]:
 
 def grouped(parts: Sequence[Part], kinds: Sequence[str]) -> list[list[Part]]:
     """Parts that are connected by things of these kinds, in order of their first part."""
-    return connected(parts, lambda one, other: meet(one.things, other.things, kinds))
+    homes = list(range(len(parts)))
 
+    def home(n: int) -> int:
+        while homes[n] != n:
+            homes[n] = n = homes[homes[n]]
+        return n
 
-def connected(parts: Sequence[Part], linked: Callable[[Part, Part], bool]) -> list[list[Part]]:
-    groups: list[list[Part]] = []
-    for part in parts:
-        near = [g for g in groups if any(linked(part, other) for other in g)]
-        for g in near:
-            groups.remove(g)
-        groups.append([*(p for g in near for p in g), part])
-    order = {id(part): n for n, part in enumerate(parts)}
-    for g in groups:
-        g.sort(key=lambda p: order[id(p)])
-    return sorted(groups, key=lambda g: order[id(g[0])])
+    def join(these: Sequence[int]) -> None:
+        for n in these:
+            one, other = sorted((home(n), home(these[0])))
+            homes[other] = one
+
+    for kind in kinds:
+        users: dict[Value, list[int]] = {}
+        for n, part in enumerate(parts):
+            for thing, name in part.footprint.things:
+                if thing == kind:
+                    users.setdefault(name, []).append(n)
+        for these in [sorted({n for u in users.values() for n in u})] if ANY in users else users.values():
+            join(these)
+    groups: dict[int, list[Part]] = {}
+    for n, part in enumerate(parts):
+        groups.setdefault(home(n), []).append(part)
+    return list(groups.values())
 
 
 def met_label(port: Value, value: Value) -> Label:
@@ -195,7 +216,7 @@ def _cell(config: Config, world: World, group: Sequence[Part], split: frozenset[
 
 def _store_of(store: Store, group: Sequence[Part]) -> Store:
     """What a store holds of the situations and labels of these parts."""
-    things = {thing for part in group for thing in part.things}
+    things = {thing for part in group for thing in part.footprint.things}
     situations = {name for kind, name in things if kind == "situation"}
     labels = {name for kind, name in things if kind == "label"}
     numbers = {i.number for i in store.instances if i.situation in situations}

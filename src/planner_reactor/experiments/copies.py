@@ -15,18 +15,19 @@ from planner_reactor.rs.terms import Value
 from planner_reactor.rs.vocabulary import Signature
 
 TEXT = """
-Copy[a, b, x, y, n, kind] =
-    (E[n + 1] # Asks[a]) | (E[n + 2] # Parent[a, b]) | (E[n + 3] # Child[b, kind]) | Surgery[a, x, y, n, kind]
+Copy[a, b, x, y, l1, l2, l3, l4, l5, l6, kind] =
+    (E[l1] # Asks[a]) | (E[l2] # Parent[a, b]) | (E[l3] # Child[b, kind])
+    | Surgery[a, x, y, l2, l3, l4, l5, l6, kind]
 Asks[a] = Want :; ASSERT[a]
 Parent[a, b] = SIT[a]<k> :; (~(ASSERT[b] : SUCCEED[a, k]) : FAIL[a, k])
 Child[b, kind] = SIT[b]<k> :; (~(Does[kind] : SUCCEED[b, k]) : FAIL[b, k])
-Surgery[a, x, y, n, kind] = {protocol}[a] : KILL[n + 2] : KILL[n + 3] : UNINHIBIT[a] : Renewed[a, x, y, n, kind]
-Renewed[a, x, y, n, kind] =
-    (E[n + 6] # Child[y, kind]) | (E[n + 5] # Child[x, kind]) | (E[n + 4] # NewParent[a, x, y])
+Surgery[a, x, y, l2, l3, l4, l5, l6, kind] =
+    {protocol}[a] : KILL[l2] : KILL[l3] : UNINHIBIT[a] : Renewed[a, x, y, l4, l5, l6, kind]
+Renewed[a, x, y, l4, l5, l6, kind] = (E[l6] # Child[y, kind]) | (E[l5] # Child[x, kind]) | (E[l4] # NewParent[a, x, y])
 NewParent[a, x, y] = SIT[a]<k> :; (~(ASSERT[x] : ASSERT[y] : SUCCEED[a, k]) : FAIL[a, k])
 Does["alone"] = Work
 """
-"""One copy: a, b, x, y are its situations, n + 1 … n + 6 its labels."""
+"""One copy: a, b, x, y are its situations (sa, sb, sx, sy), l1 to l6 the labels of P1 to P6."""
 
 TOOLS = """
 Does["left first"] = OUT[take_left, 1] : OUT[take_right, 1] : (Work ; (OUT[give_right, 1] : OUT[give_left, 1]))
@@ -43,7 +44,11 @@ SIGNATURES = {name: Signature(name, window=AT_ANY_TIME) for name in ("Want", "Wo
 def text(k: int, *, protocol: str = "WAITINHIBIT", coupled: bool = False) -> str:
     """A program `Copies` of k copies; `coupled`: the first two share two tools."""
     kinds = {1: "left first", 2: "right first"} if coupled else {}
-    calls = [f'Copy[a{i}, b{i}, x{i}, y{i}, {10 * i}, "{kinds.get(i, "alone")}"]' for i in range(1, k + 1)]
+    calls = []
+    for i in range(1, k + 1):
+        situations = ", ".join(f"{name}{i}" for name in "abxy")
+        labels = ", ".join(str(10 * i + label) for label in range(1, 7))
+        calls.append(f'Copy[{situations}, {labels}, "{kinds.get(i, "alone")}"]')
     program = TEXT.format(protocol=protocol) + (TOOLS if coupled else "")
     return program + f"Copies = {' | '.join([*calls, 'Tools'] if coupled else calls)}\n"
 
