@@ -1,7 +1,8 @@
 """planner-reactor: robot programs that start acting at once and keep improving while they run.
 
 Everything that the command does is also a call of the same name here: `run`, `check`, `loop`, `kit`, `plan`,
-`network`, `experiment`, `bench`, `verify` (see `planner_reactor.calls`). They are imported only when they are asked for.
+`network`, `experiment`, `bench`, `evolve`, `limits`, `verify` (see `planner_reactor.calls`). They are imported only
+when they are asked for.
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from planner_reactor.calls.checking import check
+    from planner_reactor.calls.evolving import evolve, limits
     from planner_reactor.calls.looping import kit, loop
     from planner_reactor.calls.measuring import bench, experiment
     from planner_reactor.calls.networks import network
@@ -18,13 +20,15 @@ if TYPE_CHECKING:
     from planner_reactor.calls.running import run
     from planner_reactor.calls.verifying import verify
 
-__all__ = ["bench", "check", "experiment", "kit", "loop", "network", "plan", "run", "verify"]
+__all__ = ["bench", "check", "evolve", "experiment", "kit", "limits", "loop", "network", "plan", "run", "verify"]
 
 _MODULES = {
     "bench": "measuring",
     "check": "checking",
+    "evolve": "evolving",
     "experiment": "measuring",
     "kit": "looping",
+    "limits": "evolving",
     "loop": "looping",
     "network": "networks",
     "plan": "planning",

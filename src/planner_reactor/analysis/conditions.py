@@ -83,11 +83,16 @@ def shortened(constraints: Sequence[Constraint], known: Sequence[Constraint] = (
 # ------------------------------------------------------------------------------------------------------- text
 
 
-def text(condition: Condition, joint: str = " and ") -> str:
+def text(condition: Condition) -> str:
     """The condition for people; `true` if nothing is asked."""
     written: list[str] = [str(event) for event in events_of(condition)]
     written += _compared(constraints_of(condition))
-    return joint.join(written) or "true"
+    return " and ".join(written) or "true"
+
+
+def path_text(path: Iterable[Condition]) -> str:
+    """The conditions of a path, in their order, as X §4.3.1 writes them: `c1 . c2`."""
+    return " . ".join(t for t in map(text, path) if t != "true") or "true"
 
 
 def _compared(constraints: Sequence[Constraint]) -> list[str]:
@@ -113,6 +118,8 @@ def _between(subject: Unknown, found: dict[str, str]) -> str:
         return f"{subject!r}{found['above']}"
     if "above" not in found:
         return f"{subject!r} {found['below strictly']} {found['below']}"
+    if found["above"] == f" <= {found['below']}" and found["below strictly"] == ">=":
+        return f"{subject!r} == {found['below']}"
     return f"{found['below']} {found['below strictly'].replace('>', '<')} {subject!r}{found['above']}"
 
 

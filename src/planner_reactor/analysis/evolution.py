@@ -20,6 +20,8 @@ import msgspec
 from msgspec.structs import replace
 
 from planner_reactor.analysis.conditions import Atom, Condition, Event, constraints_of, mentioned, shortened, weaker
+from planner_reactor.analysis.explore import canonical
+from planner_reactor.analysis.renaming import renamed
 from planner_reactor.rs.configurations import Config, Ending, Label, World
 from planner_reactor.rs.constraints import consistent, projected
 from planner_reactor.rs.evolves import settle, started
@@ -30,6 +32,9 @@ from planner_reactor.rs.unknowns import Compared, Constraint, Symbolic, Unknown,
 from planner_reactor.rs.vocabulary import BOTH
 
 T = TypeVar("T")
+
+MARKER = Leaf("NIL", results=("marker",))
+"""A leaf as no text has one: what becomes of it is what would become of the leaf in whose place it stands."""
 
 DURATIONS = ("Delay", "Term", "SUSPEND")
 """Leaves whose argument is how long they take."""
@@ -79,12 +84,13 @@ def _presumed(state: State) -> tuple[Constraint, ...]:
 
 def reachable(
     start: State, world: World, *, open_ports: Collection[Value] = (), limit: int = 1_000
-) -> tuple[list[tuple[Condition, State]], bool]:
-    """Equation (3), poss*: the (path condition, state) pairs, breadth first; has every one been found?
+) -> tuple[list[tuple[tuple[Condition, ...], State]], bool]:
+    """Equation (3), poss*: the (path, state) pairs, breadth first; has every one been found?
 
+    A path is the condition of each of its steps, in their order: equation (2), c = c1.c2.….
     A path is followed no further where its configuration and what is known have been met before.
     """
-    found: list[tuple[Condition, State]] = [((), start)]
+    found: list[tuple[tuple[Condition, ...], State]] = [((), start)]
     seen = {_timeless(start)}
     for path, state in found:  # grows while it is read
         for evolution in poss(state, world, open_ports=open_ports):
@@ -93,12 +99,33 @@ def reachable(
             key = _timeless(evolution.after)
             if key not in seen:
                 seen.add(key)
-                found.append(((*path, *evolution.condition), evolution.after))
+                found.append(((*path, evolution.condition), evolution.after))
     return found, True
 
 
 def _timeless(state: State) -> tuple[Config, tuple[Constraint, ...]]:
-    return state.config, tuple(sorted(state.known, key=repr))
+    """What tells states apart: not the names of fresh unknowns."""
+    return renamed((canonical(state.config), tuple(sorted(state.known, key=repr))))
+
+
+def extended_abort(
+    state: State, spot: Spot, world: World, *, open_ports: Collection[Value] = ()
+) -> tuple[Condition, ...]:
+    """Equation (B.1): every condition under which one live leaf aborts in one step, by itself or because it is forced.
+
+    `℧̄A = ℧A ∨ ⋁ (℧Pi ∨ ΩPi)` for the other parts of a `#`. Which steps force it is asked of the rules: in its place
+    stands a process that nothing ends and that nothing begins anew, and steps after which it is gone have aborted it.
+    """
+    assert isinstance(spot.leaf, Leaf)
+    spots = list(state.config.spots())
+    own = [e for e in of_spot(state, spot, spot.leaf, spots, world) if e.label[2] == "ab"]
+    marked = replace(state, config=state.config.put(spot, MARKER))
+    forced = [
+        e
+        for e in poss(marked, world, open_ports=open_ports)
+        if all(after.leaf != MARKER for after in e.after.config.spots())
+    ]
+    return tuple(e.condition for e in (*own, *forced))
 
 
 # ------------------------------------------------------------------------------------------------ without delay

@@ -46,12 +46,16 @@ LIMIT = 20_000
 
 
 class Limit(msgspec.Struct, frozen=True):
-    """One entry: under this condition the process comes to this term; `component` is what has changed, as it began."""
+    """One entry: under this condition the process comes to this term.
+
+    `component` is what has changed, as it began, and `reached` what it has come to (None if it has ended).
+    """
 
     condition: Condition
     term: Process
     kind: Kind
     component: Process | None = None
+    reached: Process | None = None
 
 
 class LimitSet(msgspec.Struct, frozen=True):
@@ -106,7 +110,7 @@ class _Search:
         config = Config()
         for component in self._components:
             config = started(component, self._world, config=config)
-        return _untimed(config)
+        return untimed(config)
 
     # ---------------------------------------------------------------------------------------------- one state
 
@@ -115,13 +119,11 @@ class _Search:
         state = self._unfolded(state)
         limits = list(self._limits(state))
         if limits or not (moves := self._moves(state, condition)):
-            for kind, term, component in limits:
-                self._add(kind, term, component, state, condition)
-            if not limits:
-                self._add("stuck", self._stuck(state), None, state, condition)
+            for found in limits or [Limit((), Residuals({}).network(state.config, self._world), "stuck")]:
+                self._add(found, condition)
             return
         for e in moves:
-            after = replace(e.after, config=_untimed(e.after.config))
+            after = replace(e.after, config=untimed(e.after.config))
             told = self._told((*condition, *e.condition), after)
             if self._is_new(after, told):
                 yield replace(after, known=constraints_of(told)), told
@@ -159,7 +161,7 @@ class _Search:
         while (found := next(self._recursions(state.config, changed=False), None)) is not None:
             spot, call = found
             term = begin(call, (), self._world)
-            state = replace(state, config=_untimed(settle(state.config.put(spot, term), self._world)))
+            state = replace(state, config=untimed(settle(state.config.put(spot, term), self._world)))
         return state
 
     def _recursions(self, config: Config, *, changed: bool) -> Iterator[tuple[Spot, Call]]:
@@ -175,34 +177,32 @@ class _Search:
 
     # ------------------------------------------------------------------------------------------------- limits
 
-    def _limits(self, state: State) -> Iterator[tuple[Kind, Process, Process]]:
+    def _limits(self, state: State) -> Iterator[Limit]:
         for spot, call in self._recursions(state.config, changed=True):
             own = self._components[spot.root - 1]
             if isinstance(own, Call) and own.name == call.name:
-                yield "recursion", self._network({own: call}), own
+                yield Limit((), self._network({own: call}), "recursion", own, call)
             else:
-                yield "recursion", _beside(self._network({}), call), own
+                yield Limit((), _beside(self._network({}), call), "recursion", own, call)
         for spot in state.config.spots():
             if isinstance(spot.leaf, Leaf) and spot.leaf.name in self._sensors:
                 own = self._components[spot.root - 1]
                 sensor = Residuals({}).residual(spot.leaf, self._whole)
-                yield "bound", sensor if own == sensor else _beside(self._network({}), sensor), own
+                beside = self._network({}) if own == sensor else _beside(self._network({}), sensor)
+                yield Limit((), beside, "bound", own, sensor)
         for (_, term), own in zip(state.config.roots, self._components, strict=True):
             if isinstance(term, Ended):
-                yield "end", self._network({own: None}), own
+                yield Limit((), self._network({own: None}), "end", own)
 
     def _network(self, changed: dict[Process, Process | None]) -> Process:
         return folded(self._tree, changed, self._whole) or STOP
 
-    def _stuck(self, state: State) -> Process:
-        return Residuals({}).network(state.config, self._world)
-
-    def _add(self, kind: Kind, term: Process, component: Process | None, state: State, condition: Condition) -> None:
+    def _add(self, found: Limit, condition: Condition) -> None:
         asked = constraints_of(condition)
-        keep = {*_given(asked), *unknowns_of(term), *mentioned(events_of(condition))}
+        keep = {*_given(asked), *unknowns_of((found.term, found.reached)), *mentioned(events_of(condition))}
         asked = shortened(projected(asked, keep))
-        new = renamed(Limit((*events_of(condition), *asked), term, kind, component))
-        same = [old for old in self._found if old.term == new.term and old.kind == kind]
+        new = renamed(replace(found, condition=(*events_of(condition), *asked)))
+        same = [old for old in self._found if old.term == new.term and old.kind == new.kind]
         if not any(weaker(old.condition, new.condition) for old in same):
             dropped = [old for old in same if weaker(new.condition, old.condition)]
             self._found = [*(old for old in self._found if old not in dropped), new]
@@ -251,7 +251,7 @@ def _is_pause(leaf: Leaf) -> bool:
     return leaf.name == "Delay" and leaf.site is None and leaf.arguments == (QUANTUM,)
 
 
-def _untimed(config: Config) -> Config:
+def untimed(config: Config) -> Config:
     """The configuration in which what takes an unknown time may end at any time."""
     return replace(config, roots=tuple((n, _unhurried(term)) for n, term in config.roots))
 

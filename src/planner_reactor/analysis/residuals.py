@@ -118,7 +118,8 @@ class Residuals(msgspec.Struct, frozen=True):
                 return self._loop(term, world)
 
     def _loop(self, term: Testing | Round | Spawning, world: World) -> Process:
-        loop = _bound(term.loop, term.scope)
+        head = self.heads.get(begin(term.loop, term.scope, world))
+        loop = called(*head) if head is not None else _bound(term.loop, term.scope)
         match term:
             case Round(body):
                 return seq(self.residual(body, world), loop)

@@ -8,8 +8,6 @@ from planner_reactor.cli.application import command
 from planner_reactor.errors import InputError
 
 LATER = {
-    "evolve": ("show the steps that a process can take.", "FILE.rsl 'NAME[args]'"),
-    "limits": ("show the limit set of a process.", "FILE.rsl 'NAME[args]'"),
     "lts": ("write the labelled transition system of a process.", "FILE.rsl 'NAME[args]' -o OUT.aut"),
     "dynamics": ("derive action schemas from a model of the environment.", "FILE.rsl 'NAME[args]'"),
     "reactor": ("run the reactor as a process of its own.", ""),
