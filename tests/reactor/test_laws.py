@@ -25,28 +25,28 @@ Patch = pytest.MonkeyPatch
 def scripted(patch: Patch, text: str) -> None:
     """Apply the second adaptation by another script."""
     usual = adaptation.script
-    patch.setattr(adaptation, "script", lambda a: parse_process(text) if a.id == 2 else usual(a))
+    patch.setattr(adaptation, "script", lambda a, killed: parse_process(text) if a.id == 2 else usual(a, killed))
 
 
 def half_applied(patch: Patch) -> None:
-    scripted(patch, "DRAIN[part] : KILL[2] : Delay[1] : KILL[3] : POST[4] : UNINHIBIT[part]")
+    scripted(patch, "DRAIN[part] : COMMIT[2] : KILL[2] : Delay[1] : KILL[3] : POST[4] : UNINHIBIT[part]")
 
 
 def forgetful(patch: Patch) -> None:
-    scripted(patch, "DRAIN[part] : KILL[2] : KILL[3] : UNINHIBIT[part]")
+    scripted(patch, "DRAIN[part] : COMMIT[2] : KILL[2] : KILL[3] : UNINHIBIT[part]")
 
 
 def mingling(patch: Patch) -> None:
-    scripted(patch, "DRAIN[part] : POST[4] : KILL[2] : KILL[3] : UNINHIBIT[part]")
+    scripted(patch, "DRAIN[part] : COMMIT[2] : POST[4] : KILL[2] : KILL[3] : UNINHIBIT[part]")
 
 
 def cutting(patch: Patch) -> None:
-    scripted(patch, "KILL[2] : KILL[3] : POST[4]")
+    scripted(patch, "COMMIT[2] : KILL[2] : KILL[3] : POST[4]")
     patch.setattr(Guards, "at_rest", lambda self, label: True)
 
 
 def mixing(patch: Patch) -> None:
-    scripted(patch, "POST[4] : KILL[3]")  # beside the old reaction, while an instance is served
+    scripted(patch, "COMMIT[2] : POST[4] : KILL[3]")  # beside the old reaction, while an instance is served
 
 
 def endless(patch: Patch) -> None:
@@ -54,7 +54,7 @@ def endless(patch: Patch) -> None:
 
 
 def orphaning(patch: Patch) -> None:
-    scripted(patch, "DRAIN[part] : KILL[2] : KILL[3] : POST[4]")
+    scripted(patch, "DRAIN[part] : COMMIT[2] : KILL[2] : KILL[3] : POST[4]")
     patch.setattr(Situations, "root_ended", lambda self, owner: None)
 
 
@@ -74,6 +74,10 @@ def versionless(patch: Patch) -> None:
 
 def epochless(patch: Patch) -> None:
     patch.setattr(admission, "_identity", lambda adaptation, standing: None)
+
+
+def undurable(patch: Patch) -> None:
+    scripted(patch, "DRAIN[part] : KILL[2] : KILL[3] : POST[4] : UNINHIBIT[part]")
 
 
 def dropping(patch: Patch) -> None:
@@ -135,6 +139,7 @@ DEFECTS: dict[str, tuple[int, Callable[[Patch], None]]] = {
     "an inhibition left behind": (5, orphaning),
     "an adaptation applied twice": (6, twice),
     "planned against another version": (7, versionless),
+    "applied and not in the journal": (8, undurable),
     "an older epoch": (7, epochless),
     "a perception dropped": (10, dropping),
     "an instance lost": (11, losing),

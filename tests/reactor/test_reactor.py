@@ -67,8 +67,8 @@ def test_a_live_reactor_prints_as_a_program_that_can_be_run(bench: Bench) -> Non
 
 
 def test_the_script_of_an_adaptation_is_itself_rs() -> None:
-    assert show(script(SECOND)) == "DRAIN[part] : KILL[2] : KILL[3] : POST[4] : UNINHIBIT[part]"
-    assert show(script(FIRST)) == "POST[3] : POST[2] : POST[1] : POST[0]"
+    assert show(script(SECOND, ())) == "DRAIN[part] : COMMIT[2] : KILL[2] : KILL[3] : POST[4] : UNINHIBIT[part]"
+    assert show(script(FIRST, ())) == "COMMIT[1] : POST[3] : POST[2] : POST[1] : POST[0]"
 
 
 def test_an_adaptation_that_exceeds_its_deadline_changes_nothing(bench: Bench) -> None:
@@ -93,7 +93,7 @@ REFUSALS: dict[str, tuple[str, Adaptation]] = {
     "an id twice": ("repeated", FIRST),
     "another version": ("stale", replace(SECOND, changes=(change("part", 7),))),
     "an older epoch": ("epoch", replace(SECOND, epoch=-1)),
-    "another mode": ("mode", replace(SECOND, mode="versions")),
+    "another mode": ("mode", replace(SECOND, mode="at once")),
     "a text that does not parse": ("text", replace(SECOND, definitions="P[4] = SIT[part]<k> :; (")),
     "an unknown process": ("text", replace(SECOND, definitions="P[4] = SIT[part]<k> :; Doo[new, 1]")),
     "a body whose tail would be cut": (

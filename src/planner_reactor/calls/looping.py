@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, TypedDict, Unpack
+from typing import Any, Final, TypedDict, Unpack, cast, get_args
 
 import msgspec
 from msgspec.structs import replace
@@ -22,6 +22,7 @@ from planner_reactor.experiments.loop import Loop, summary
 from planner_reactor.experiments.replay import check_replay
 from planner_reactor.experiments.runs import planner_time
 from planner_reactor.experiments.timing import PER_STEP, PlannerTime
+from planner_reactor.link.messages import Mode
 from planner_reactor.logic.reader import read_domain
 from planner_reactor.planner import Planner
 from planner_reactor.runtime import Host, Scheduler, VirtualClock, WallClock
@@ -31,6 +32,7 @@ from planner_reactor.workcell.faults import FaultSchedule, faults_from
 from planner_reactor.workcell.kit import KitSpec, kit_from
 
 KITTING_HOST = "planner_reactor.workcell.host"
+MODES: Final[tuple[Mode, ...]] = get_args(Mode)
 TRAYS = 5
 """Kits of a run of which neither a number nor an end was given."""
 
@@ -40,8 +42,8 @@ class LoopOptions(TypedDict, total=False):
 
     `trays`: how many kits (or whatever the host counts) to complete; `seed`; `kit`: the file of another kit;
     `faults`: a file of faults; `until`: seconds; `cell`: "events"; `clock`: "virtual" or "wall"; `planner`:
-    "inline"; `planner_time`: seconds charged for each step of the planner, "measured" or "papers"; `mode`: "drain";
-    `relax`: "all", "none", or assumptions; `trace`: a file `*.jsonl` to write; `figures`: a directory to draw into;
+    "inline"; `planner_time`: seconds charged for each step of the planner, "measured" or "papers"; `mode`: "drain",
+    "wait" or "versions"; `relax`: "all", "none", or assumptions; `trace`: a file `*.jsonl` to write; `figures`: a directory to draw into;
     `watch`: is given the `Loop` before it runs; `told`: is given each warning, a line.
     """
 
@@ -89,7 +91,7 @@ class _Options(msgspec.Struct, frozen=True, kw_only=True):
         one_of("cell", self.cell, ("events",), later=("physics", "camera"))
         one_of("clock", self.clock, ("virtual", "wall"))
         one_of("planner", self.planner, ("inline",), later=("process",))
-        one_of("mode", self.mode, ("drain",), later=("wait", "versions"))
+        one_of("mode", self.mode, MODES)
 
 
 def kit(*, domain: str | Path | None = None, **options: Unpack[LoopOptions]) -> dict[str, Any]:
@@ -143,7 +145,7 @@ def _prepared(
     if kit_spec is not None:
         text = with_kit(text, kit_spec)
     fault_text = read_text(given.faults) if given.faults is not None else None
-    planner = Planner(read_domain(text, file=file), goal=goal, relax=_relaxed(given.relax), mode="drain")
+    planner = Planner(read_domain(text, file=file), goal=goal, relax=_relaxed(given.relax), mode=cast(Mode, given.mode))
     maker = find_host(host)
     _expect(maker, given, kit_spec)
 

@@ -24,6 +24,7 @@ PerceptionKind = Literal[
     "adaptation_applied",  # subject = the adaptation's id
     "adaptation_refused",  # nothing of it was applied; cause says why
     "adaptation_timed_out",  # it exceeded its bound: nothing of it was applied, nothing is inhibited
+    "restarted",  # the reactor begins again on its journal; subject = sound or damaged, values = (situation, version)…
     "information",  # data the planner asked for (ΔP, R §7.1); subject = the name asked for
     "error",  # a wrong request, e.g. a guard that is not there
 ]

@@ -20,5 +20,6 @@ def surgery(adaptation: Adaptation) -> Surgery:
     """What it does to the structure of the reactor."""
     named = (*(change.situation for change in adaptation.changes), *adaptation.removed)
     return Surgery(
-        held=drained(adaptation), kills=adaptation.kills, adds=adaptation.adds, named=tuple(dict.fromkeys(named))
-    )
+        held=drained(adaptation), kills=adaptation.kills, adds=adaptation.adds, named=tuple(dict.fromkeys(named)),
+        removed=adaptation.removed,
+    )  # fmt: skip

@@ -2,31 +2,38 @@
 
 An adaptation becomes a process in RS that runs beside the reactor, with a root of its own that owns what it inhibits:
 
-    DRAIN[top] : … : KILL[old] : … : POST[new] : … : UNINHIBIT[top]
+    drain      DRAIN[top] : … : COMMIT[id] : KILL[old] : … : POST[new] : … : UNINHIBIT[top]
+    wait       the same, with WAITINHIBIT in place of DRAIN
+    versions   COMMIT[id] : RETIRE[old] : … : RENEW[s] : … : POST[new] : …        and then, apart, what was retired goes
 
-top-down for what goes, bottom-up for what comes. Every KILL is known beforehand to be legal once the drains have ended,
-so nothing waits after the first change: up to there the whole can still be taken back (its deadline passed), from there
-on it is applied within the instant.
+top-down for what goes, bottom-up for what comes. COMMIT makes it durable. Every KILL is known beforehand to be legal
+once the drains have ended, so nothing waits after COMMIT: up to there the whole can still be taken back (its deadline
+has passed, the disk is full), from there on it is applied within the instant.
 """
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from math import isinf
 from typing import Literal
 
-from planner_reactor.errors import RefusedError
+from msgspec.structs import replace
+
+from planner_reactor.errors import DiskError, RefusedError
 from planner_reactor.link.messages import Adaptation
 from planner_reactor.link.surgeries import drained, surgery
-from planner_reactor.rs.reactions import Reaction, drain_script
+from planner_reactor.reactor.committed import Committed
+from planner_reactor.reactor.journal import Begun, Decided, Journal
+from planner_reactor.rs.reactions import Reaction, drain_script, removal_script, versions_script, wait_script
 from planner_reactor.rs.terms import Process
 from planner_reactor.runtime import Executer, Root, Scheduler, Timer
 
 LONGEST = 600.0
 """Seconds after which an adaptation whose bound cannot be computed is given up."""
 
-State = Literal["draining", "applied", "timed_out"]
+State = Literal["draining", "committed", "applied", "refused", "timed_out"]
 
 
 @dataclass(slots=True, eq=False)
@@ -35,6 +42,8 @@ class Transaction:
 
     adaptation: Adaptation
     reactions: tuple[Reaction, ...]
+    killed: tuple[Reaction, ...]
+    before: Committed  # the structure that it changes
     received: float
     bound: float
     limit: float = LONGEST
@@ -44,6 +53,7 @@ class Transaction:
     surgery: float = 0.0  # when the first reaction was removed or added
     kills: list[int] = field(default_factory=list)  # done
     adds: list[int] = field(default_factory=list)  # done
+    problem: str = ""  # why it came to nothing
 
     @property
     def situations(self) -> tuple[str, ...]:
@@ -52,21 +62,31 @@ class Transaction:
         return (*changed, *(s for s in self.adaptation.removed if s not in changed))
 
 
-def script(adaptation: Adaptation) -> Process:
-    """The adaptation as a process (mode `drain`)."""
-    return drain_script(surgery(adaptation))
+def script(adaptation: Adaptation, killed: tuple[Reaction, ...]) -> Process:
+    """The adaptation as a process, in its mode."""
+    plan = replace(surgery(adaptation), number=adaptation.id)
+    match adaptation.mode:
+        case "drain":
+            return drain_script(plan)
+        case "wait":
+            return wait_script(plan)
+        case "versions":
+            return versions_script(plan, killed)
 
 
 class Transactions:
     """The adaptations under way. `finished` is called with each as it is applied or given up."""
 
-    def __init__(self, executer: Executer, scheduler: Scheduler, finished: Callable[[Transaction], None]) -> None:
+    def __init__(
+        self, executer: Executer, scheduler: Scheduler, journal: Journal, finished: Callable[[Transaction], None]
+    ) -> None:
         self._executer = executer
         self._scheduler = scheduler
+        self._journal = journal
         self._finished = finished
         self._by_root: dict[Root, Transaction] = {}
-        self.seen: set[int] = set()
-        self.epoch = 0
+        self._removals: deque[tuple[int, Process]] = deque()
+        self._removing: Root | None = None
 
     @property
     def under_way(self) -> tuple[Transaction, ...]:
@@ -76,21 +96,45 @@ class Transactions:
     def pending_situations(self) -> frozenset[str]:
         return frozenset(s for t in self.under_way for s in t.situations)
 
-    def begin(self, adaptation: Adaptation, reactions: tuple[Reaction, ...], bound: float) -> Transaction:
-        """Load the definitions and start the script; it is applied, or taken back, from here on by itself."""
+    def begin(
+        self, adaptation: Adaptation, reactions: tuple[Reaction, ...], killed: tuple[Reaction, ...], bound: float
+    ) -> Transaction:
+        """Load the definitions and start the script; it is applied, or taken back, from here on by itself.
+
+        `RefusedError` (reason disk) if the journal cannot take it.
+        """
+        now = self._scheduler.now
+        before = self._journal.state.committed
+        try:
+            self._journal.write(Begun(adaptation, now), sync=False)
+        except DiskError as problem:
+            raise RefusedError("disk", f"it cannot be made durable: {problem}") from problem
+        transaction = Transaction(adaptation, reactions, killed, before, now, bound)
         deadline = adaptation.deadline if adaptation.deadline is not None else bound
-        transaction = Transaction(adaptation, reactions, self._scheduler.now, bound)
-        self.seen.add(adaptation.id)
-        self.epoch = adaptation.epoch
         self._executer.load([r.schema for r in reactions])
         transaction.limit = LONGEST if isinf(deadline) else deadline
         transaction.timer = self._scheduler.call_after(transaction.limit, lambda: self._expire(transaction))
-        transaction.root = self._executer.start_process(script(adaptation), name=f"adaptation {adaptation.id}")
+        transaction.root = self._executer.start_process(
+            script(adaptation, killed), name=f"adaptation {adaptation.id}"
+        )
         self._by_root[transaction.root] = transaction
         return transaction
 
+    def commit(self, number: int) -> Transaction | None:
+        """COMMIT[number]: the journal says that it is applied, before anything of it is. None if it cannot."""
+        for transaction in self.under_way:
+            if transaction.adaptation.id == number and transaction.state == "draining":
+                try:
+                    self._journal.write(Decided(number, "applied", self._scheduler.now))
+                except DiskError as problem:
+                    transaction.problem = f"it cannot be made durable: {problem}"
+                    return None
+                transaction.state = "committed"
+                return transaction
+        return None
+
     def changed(self, label: int, *, added: bool) -> bool:
-        """A reaction was added or removed: was it one of the scripts that did it?"""
+        """A reaction was added, removed or retired: was it one of the scripts that did it?"""
         for transaction in self._by_root.values():
             wanted = transaction.adaptation.adds if added else transaction.adaptation.kills
             if label in wanted:
@@ -106,20 +150,39 @@ class Transactions:
         if transaction is not None:
             # what the last POST adds comes to life within this step: it is over when the step is
             self._executer.after_step(lambda: self._close(root, transaction))
+        elif root is self._removing:
+            self._removing = None
+            self._executer.after_step(self._remove)
 
     def _close(self, root: Root, transaction: Transaction) -> None:
         del self._by_root[root]
         if transaction.timer is not None:
             transaction.timer.cancel()
-        transaction.state = "applied" if root.outcome == "stop" else "timed_out"
-        if transaction.state == "timed_out":
+        if root.outcome == "stop":
+            transaction.state = "applied"
+            if transaction.adaptation.mode == "versions":
+                self._removals.append((transaction.adaptation.id, _removal(transaction)))
+                self._remove()
+        else:
+            transaction.state = "refused" if transaction.problem else "timed_out"
+            self._journal.note(Decided(transaction.adaptation.id, transaction.state, self._scheduler.now))
             self._executer.unload([r.schema for r in transaction.reactions])
         self._finished(transaction)
 
     def _expire(self, transaction: Transaction) -> None:
         """Its bound has passed: the drains are let go, nothing has changed."""
-        if transaction.root is not None and transaction.root.outcome is None and not transaction.kills:
+        if transaction.root is not None and transaction.root.outcome is None and transaction.state == "draining":
             self._executer.kill(transaction.root)
+
+    def _remove(self) -> None:
+        """What was retired goes in the order of the adaptations: an older parent may still assert what is removed."""
+        if self._removing is None and self._removals:
+            number, removal = self._removals.popleft()
+            self._removing = self._executer.start_process(removal, name=f"removal {number}")
+
+
+def _removal(transaction: Transaction) -> Process:
+    return removal_script(surgery(transaction.adaptation), transaction.killed)
 
 
 def refuse_unsafe_kills(adaptation: Adaptation, killed: tuple[Reaction, ...]) -> None:
@@ -129,6 +192,10 @@ def refuse_unsafe_kills(adaptation: Adaptation, killed: tuple[Reaction, ...]) ->
         if reaction.situation is not None:
             if reaction.situation not in held:
                 raise RefusedError("structure", f"P[{reaction.label}] is killed, {reaction.situation} is not drained")
+        elif not reaction.monitors and adaptation.mode == "versions":
+            raise RefusedError(
+                "structure", f"P[{reaction.label}] serves no situation: it has no versions, expected mode drain"
+            )
         elif not reaction.monitors and not (reaction.asserts and held.issuperset(reaction.asserts)):
             raise RefusedError(
                 "structure", f"P[{reaction.label}] is no monitor and asserts more than is drained: it may be at work"

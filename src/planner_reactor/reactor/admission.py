@@ -11,7 +11,7 @@ planner, a sentence for people. Nothing is changed here.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Container, Mapping, Sequence
 
 import msgspec
 
@@ -29,7 +29,7 @@ class Standing(msgspec.Struct, frozen=True):
     reactions: Mapping[int, Reaction]
     versions: Mapping[str, int]
     pending: Collection[str]
-    seen: Collection[int]
+    taken: Container[int]
     epoch: int
     used_labels: Collection[int]
     signatures: Mapping[str, Signature]
@@ -37,7 +37,7 @@ class Standing(msgspec.Struct, frozen=True):
     equation: Program  # equation (3), so that what is added is checked as guarded reactions
 
 
-MODES = ("drain",)
+MODES = ("drain", "wait", "versions")
 
 
 def examine(adaptation: Adaptation, standing: Standing) -> tuple[Reaction, ...]:
@@ -51,7 +51,7 @@ def examine(adaptation: Adaptation, standing: Standing) -> tuple[Reaction, ...]:
 
 
 def _identity(adaptation: Adaptation, standing: Standing) -> None:
-    if adaptation.id in standing.seen:
+    if adaptation.id in standing.taken:
         raise RefusedError("repeated", f"adaptation {adaptation.id} was taken before")
     if adaptation.epoch < standing.epoch:
         raise RefusedError("epoch", f"epoch {adaptation.epoch}, expected at least {standing.epoch}")

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from planner_reactor.reactor.controls import Controls
+from planner_reactor.reactor.controls import Controls, commits
 from planner_reactor.reactor.guards import Guards
 from planner_reactor.reactor.monitors import Monitors
 from planner_reactor.reactor.situations import Situations
@@ -35,6 +35,7 @@ class BuiltIns:
         assumed: Callable[[str, bool], None] = _unheard,
         reached: Callable[[str, int | None], None] = _unheard,
         told: Callable[[str, tuple[Value, ...]], None] = _unheard,
+        commit: Callable[[int], bool] = lambda number: True,
     ) -> None:
         self._waker = ExecuterWaker()
         self.situations = Situations(self._waker, notice)
@@ -42,7 +43,8 @@ class BuiltIns:
         situation_processes = Controls(self.situations)
         self._waker.ended_wait = situation_processes.granted
         monitors = Monitors(scheduler, assumptions or {}, assumed, reached, told)
-        self.controls: tuple[Control, ...] = (*situation_processes, *self.guards, *monitors)
+        committing = commits(commit)
+        self.controls: tuple[Control, ...] = (*situation_processes, *self.guards, *monitors, committing)
 
     def attach(self, executer: Executer) -> None:
         self._waker.executer = executer

@@ -180,3 +180,13 @@ class Controls:
     def _enable(self, strand: Strand, arguments: tuple[Value, ...]) -> Outcome:
         self._situations.enable(str(arguments[0]), str(arguments[1]))
         return STOPPED
+
+
+def commits(commit: Callable[[int], bool]) -> BuiltIn:
+    """COMMIT[n]: asks for an adaptation to be made durable; aborts if that cannot be done (cause error)."""
+
+    def begin(strand: Strand, arguments: tuple[Value, ...]) -> Outcome:
+        number = arguments[0]
+        return STOPPED if isinstance(number, int) and commit(number) else ERROR
+
+    return BuiltIn("COMMIT", begin)

@@ -1,7 +1,7 @@
 """The reactor's laws, asked after every event (docs/reactor.md, "The reactor's laws").
 
 Each law is a method that looks at the reactor as it stands, or at what has just happened, and gives a sentence for
-every breach. They use nothing that the reactor uses to keep them: counts are kept apart. Laws 1 to 7, 10, 11, 13 and
+every breach. They use nothing that the reactor uses to keep them: counts are kept apart. Laws 1 to 8, 10, 11, 13 and
 14 are asked here; 16 (same seed, same trace) is a claim about two runs.
 """
 
@@ -14,10 +14,13 @@ import msgspec
 
 from planner_reactor.link.channels import PerceptionChannel
 from planner_reactor.reactor.adaptation import Transaction, Transactions
+from planner_reactor.reactor.journal import Journal
 from planner_reactor.reactor.situations import Situations, named
+from planner_reactor.reactor.versions import Lifetime
+from planner_reactor.rs.reactions import Reaction
 from planner_reactor.runtime import Scheduler
 
-CHECKED = (1, 2, 3, 4, 5, 6, 7, 10, 11, 13, 14)
+CHECKED = (1, 2, 3, 4, 5, 6, 7, 8, 10, 11, 13, 14)
 GRACE = 1e-6
 
 
@@ -28,18 +31,25 @@ class Watched(Protocol):
     situations: Situations
     transactions: Transactions
     perceptions: PerceptionChannel
-    failed: dict[str, float]
+    journal: Journal
+    reactions: dict[int, Reaction]
+
+    @property
+    def failed(self) -> Mapping[str, float]: ...
 
     @property
     def counts(self) -> Mapping[str, int]: ...
 
-    def version_of_label(self, label: int | None) -> int: ...
+    def lifetime(self, label: int | None) -> Lifetime | None: ...
 
     def is_live_owner(self, owner: Hashable) -> bool: ...
 
     def resting_on(self, assumption: str) -> tuple[str, ...]: ...
 
     def over_budget(self) -> str | None: ...
+
+    @property
+    def restoring(self) -> bool: ...
 
 
 class Violation(msgspec.Struct, frozen=True):
@@ -64,7 +74,7 @@ class Laws:
         self._applied: set[int] = set()
         self._added: set[int] = set()  # labels that came to life and whose adaptation has not been looked at yet
         self._promised: list[Transaction] = []  # applied in this step: what they add must be there at its end
-        self._served_by: dict[int, int] = {}  # instance → version that served it
+        self._seen: dict[int, list[Lifetime]] = {}  # instance → of the reactions that served it
         self._asserted = self._ended = 0
         self._perceived = 0
         self._epoch = 0
@@ -92,16 +102,16 @@ class Laws:
 
     def _completes(self, fields: dict[str, Any]) -> None:
         self._ended += 1
-        self._served_by.pop(fields["instance"], None)
+        self._seen.pop(fields["instance"], None)
 
     def _enters(self, fields: dict[str, Any]) -> None:
         """Law 3, consistent: an instance sees one version."""
-        version = self._reactor.version_of_label(fields["guard"])
-        first = self._served_by.setdefault(fields["instance"], version)
-        if version != first:
-            self.breach(
-                3, f"instance {fields['instance']} of {fields['situation']} saw versions {first} and {version}"
-            )
+        instance, life = fields["instance"], self._reactor.lifetime(fields["guard"])
+        lives = self._seen.setdefault(instance, [])
+        if life is not None and life not in lives:
+            lives.append(life)
+            if max(seen.first for seen in lives) > min(seen.last for seen in lives):
+                self.breach(3, f"instance {instance} of {fields['situation']} saw two versions: {lives}")
 
     def _leaves(self, fields: dict[str, Any]) -> None:
         """Law 2, safe: no reaction in service is interrupted."""
@@ -109,9 +119,9 @@ class Laws:
             self.interruptions += 1
             self.breach(2, f"a body of instance {fields['instance']} of {fields['situation']} was cut off")
 
-    def applied(self, transaction: Transaction, versions: dict[str, int]) -> None:
-        """Laws 1, 4, 6 and 7 of a transaction that has just ended well; `versions` are those before it."""
-        adaptation = transaction.adaptation
+    def applied(self, transaction: Transaction) -> None:
+        """Laws 1, 4, 6, 7 and 8 of a transaction that has just ended well."""
+        adaptation, versions = transaction.adaptation, transaction.before.versions
         self._late(transaction)
         self._half(transaction)
         self._promised.append(transaction)
@@ -124,10 +134,10 @@ class Laws:
             self.breach(7, f"epoch {adaptation.epoch} after {self._epoch}")
         self._epoch = adaptation.epoch
         for change in adaptation.changes:
-            if change.base != versions[change.situation]:
-                self.breach(
-                    7, f"{change.situation} was at version {versions[change.situation]}, not at {change.base}"
-                )
+            if change.base != (version := versions.get(change.situation, 0)):
+                self.breach(7, f"{change.situation} was at version {version}, not at {change.base}")
+        if adaptation.id not in self._reactor.journal.state.committed.taken:
+            self.breach(8, f"adaptation {adaptation.id} was applied and is not in the journal")
 
     # -- how things stand
 
@@ -136,6 +146,7 @@ class Laws:
         self._atomic()
         self._bounded()
         self._owned()
+        self._durable()
         self._perceptions()
         self._balanced()
         self._finite()
@@ -174,6 +185,14 @@ class Laws:
             for inhibition in situation.inhibitions:
                 if not self._reactor.is_live_owner(inhibition.owner):
                     self.breach(5, f"{situation.name} is inhibited by {named(inhibition.owner)}, which is gone")
+
+    def _durable(self) -> None:
+        """Law 8: what runs is what the journal says, once no change is half-way."""
+        if any(t.state == "committed" for t in self._reactor.transactions.under_way):
+            return
+        running, written = set(self._reactor.reactions), set(self._reactor.journal.state.committed.clauses)
+        if running != written and not self._reactor.restoring:
+            self.breach(8, f"reactions {sorted(running ^ written)} run and are not in the journal, or the reverse")
 
     def _perceptions(self) -> None:
         """Law 10: numbered without gaps, at least once."""

@@ -10,7 +10,7 @@ trace; the laws are asked after every event. A failed assumption disables, at on
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Hashable, Iterable
+from collections.abc import Callable, Hashable, Iterable, Mapping
 from typing import Any
 
 from planner_reactor.errors import RefusedError
@@ -19,9 +19,14 @@ from planner_reactor.link.messages import Adaptation, PerceptionKind
 from planner_reactor.link.surgeries import drained
 from planner_reactor.reactor.adaptation import Transaction, Transactions, refuse_unsafe_kills
 from planner_reactor.reactor.admission import Standing, examine
+from planner_reactor.reactor.assumptions import Assumptions
 from planner_reactor.reactor.built_ins import BuiltIns
+from planner_reactor.reactor.disks import NoDisk
+from planner_reactor.reactor.journal import Journal, Started, State
 from planner_reactor.reactor.laws import Laws
+from planner_reactor.reactor.recovery import restore
 from planner_reactor.reactor.structure import REACTION, Reaction
+from planner_reactor.reactor.versions import Lifetime
 from planner_reactor.rs.bounds import Bounds
 from planner_reactor.rs.parser import parse_program
 from planner_reactor.rs.printer import show
@@ -34,9 +39,6 @@ EQUATION_3 = parse_program(f"REACTOR = ADD<m> :: (E[m] # {REACTION}[m])", file="
 
 TOLD_CAUSES = frozenset({"failed", "error", "budget", "assumption"})
 """Causes of failed instances that the planner hears of; the others follow from what it knows already."""
-
-REPEAT = 2.0
-"""Seconds after which a failure that a process noticed is sent again (R §9.2.3; the monitors' period in R §8.3)."""
 
 MARGIN = 1.0
 """Seconds added to a computed bound, for the monitors and the clock."""
@@ -54,6 +56,7 @@ class Reactor:
         trace: Trace | None = None,
         budgets: Budgets | None = None,
         observer: Any = None,
+        journal: Journal | None = None,
     ) -> None:
         self.scheduler = scheduler
         self.host = host or Host("none")
@@ -61,21 +64,19 @@ class Reactor:
         self.trace = trace or Trace(lambda: scheduler.now, keep=False)
         self.budgets = budgets or Budgets()
         self.reactions: dict[int, Reaction] = {}
-        self.failed: dict[str, float] = {}  # assumptions that have failed, and since when
+        self.journal = journal or Journal(NoDisk())
         self.counts: Counter[str] = Counter(received=0, applied=0, refused=0, timed_out=0, changes_applied=0)
         self.stub_triggers = 0
         self._signatures = {**BUILT_IN, **self.host.signatures}
         self._laws_due = False
-        self._versions: dict[str, int] = {}
-        self._rests_on: dict[str, tuple[str, ...]] = {}
-        self._adopted: set[str] = set()
-        self._version_of_label: dict[int, int] = {}
+        self._lifetimes: dict[int, Lifetime] = {}
         self._loaded: dict[int, Reaction] = {}
-        self._highest_label = -1
+        self._restoration: Root | None = None
         self.laws = Laws(self)
         self._watches: dict[str, Callable[..., None]] = {
             "added": self._reaction_added,
             "removed": self._reaction_removed,
+            "retired": self._reaction_retired,
             "ended": self._instance_ended,
             "absent_guard": self._absent_guard,
         }
@@ -86,6 +87,7 @@ class Reactor:
             assumed=self.assumption_sensed,
             reached=self._stub_reached,
             told=self._information,
+            commit=self._commit,
         )
         self.situations = built_in.situations
         self.executer = Executer(
@@ -99,12 +101,20 @@ class Reactor:
             on_end=self._root_ended,
         )
         built_in.attach(self.executer)
-        self.transactions = Transactions(self.executer, scheduler, self._finished)
-        self.host.listen(self._noticed)
+        self.transactions = Transactions(self.executer, scheduler, self.journal, self._finished)
+        self.assumptions = Assumptions(scheduler, self.journal, self.situations, self._assumption_told)
+        self.host.listen(self.assumptions.noticed)
 
     def start(self) -> Root:
-        """Begin to act, with no reactions yet."""
+        """Begin to act, on what the journal says: with no reactions yet, if it is new.
+
+        `InputError` if the journal is none, `DiskError` if it cannot be read or written.
+        """
+        recovery = self.journal.recover()
         self.root = self.executer.start("REACTOR")
+        if self.journal.state != State():
+            self._restoration = restore(self, recovery, EQUATION_3)
+        self.journal.write(Started(self.scheduler.now))
         return self.root
 
     # -- adaptation
@@ -115,20 +125,38 @@ class Reactor:
         self.trace.record("adaptation_received", id=adaptation.id, purpose=adaptation.purpose)
         try:
             reactions = examine(adaptation, self._standing())
-            refuse_unsafe_kills(adaptation, tuple(self.reactions[label] for label in adaptation.kills))
+            killed = tuple(self.reactions[label] for label in adaptation.kills)
+            refuse_unsafe_kills(adaptation, killed)
+            bound = self.bound(adaptation)
+            self.transactions.begin(adaptation, reactions, killed, bound)
         except RefusedError as refusal:
-            self.counts["refused"] += 1
-            self.trace.record("adaptation_refused", id=adaptation.id, reason=refusal.reason, message=str(refusal))
-            self.perceive("adaptation_refused", str(adaptation.id), cause=refusal.reason, values=(str(refusal),))
+            self._refused(adaptation, refusal.reason, str(refusal))
             return
-        bound = self.bound(adaptation)
-        self._loaded |= {r.label: r for r in reactions}
-        self._highest_label = max([self._highest_label, *adaptation.adds])
-        for change in adaptation.changes:
-            self._versions.setdefault(change.situation, 0)
-        self._version_of_label |= {r.label: self._versions.get(r.situation or "", 0) + 1 for r in reactions}
-        self.situations.spawned.update(r.situation for r in reactions if r.situation and r.spawns)
-        self.transactions.begin(adaptation, reactions, bound)
+        versions = self.journal.state.committed.versions
+        self.loaded(reactions, {r.label: versions.get(r.situation or "", 0) + 1 for r in reactions})
+
+    def loaded(self, reactions: Iterable[Reaction], versions: Mapping[int, int]) -> None:
+        """The definitions of these reactions are there; each belongs to its situation from this version on."""
+        for reaction in reactions:
+            self._loaded[reaction.label] = reaction
+            self._lifetimes[reaction.label] = Lifetime(versions[reaction.label])
+            if reaction.situation and reaction.spawns:
+                self.situations.spawned.add(reaction.situation)
+
+    def _refused(self, adaptation: Adaptation, reason: str, message: str) -> None:
+        self.counts["refused"] += 1
+        self.trace.record("adaptation_refused", id=adaptation.id, reason=reason, message=message)
+        self.perceive("adaptation_refused", str(adaptation.id), cause=reason, values=(message,))
+
+    def _commit(self, number: int) -> bool:
+        """COMMIT[number]: from here on the adaptation counts, and what now rests on a failed assumption waits."""
+        transaction = self.transactions.commit(number)
+        if transaction is None:
+            return False
+        for reaction in transaction.killed:
+            self._lifetimes[reaction.label].last = transaction.before.versions.get(reaction.situation or "", 0)
+        self.assumptions.disable()
+        return True
 
     def bound(self, adaptation: Adaptation) -> float:
         """Seconds in which the adaptation will have been applied (R §5.5, *bounded*)."""
@@ -145,13 +173,14 @@ class Reactor:
         return tuple(operands(body)[1] for body in serving)
 
     def _standing(self) -> Standing:
+        committed = self.journal.state.committed
         return Standing(
             reactions=self.reactions,
-            versions=self._versions,
+            versions=committed.versions,
             pending=self.transactions.pending_situations,
-            seen=self.transactions.seen,
-            epoch=self.transactions.epoch,
-            used_labels=range(self._highest_label + 1),
+            taken=committed.taken,
+            epoch=committed.epoch,
+            used_labels=range(committed.highest_label + 1),
             signatures=self._signatures,
             functions=self.host.functions,
             equation=EQUATION_3,
@@ -163,23 +192,24 @@ class Reactor:
 
     def _finished(self, transaction: Transaction) -> None:
         adaptation = transaction.adaptation
-        if transaction.state == "timed_out":
-            self._forget(r.label for r in transaction.reactions)
-            self.counts["timed_out"] += 1
-            self.trace.record("adaptation_timed_out", id=adaptation.id, bound=transaction.limit)
-            self.perceive("adaptation_timed_out", str(adaptation.id), cause="TIMEOUT")
+        if transaction.state == "applied":
+            self._applied(transaction)
             return
+        self._forget(r.label for r in transaction.reactions)
+        if transaction.state == "refused":
+            self._refused(adaptation, "disk", transaction.problem)
+            return
+        self.counts["timed_out"] += 1
+        self.trace.record("adaptation_timed_out", id=adaptation.id, bound=transaction.limit)
+        self.perceive("adaptation_timed_out", str(adaptation.id), cause="TIMEOUT")
+
+    def _applied(self, transaction: Transaction) -> None:
+        adaptation = transaction.adaptation
         self.counts["applied"] += 1
-        self.laws.applied(transaction, dict(self._versions))
-        for change in adaptation.changes:
-            self._versions[change.situation] += 1
-            self._rests_on[change.situation] = change.assumptions
-        for situation in adaptation.removed:
-            self._versions[situation] = self._versions.get(situation, 0) + 1
-            self._rests_on.pop(situation, None)
-        self._adopted = (self._adopted | set(adaptation.adopts)) - set(adaptation.drops)
-        self._forget(adaptation.kills)
-        self._disable_what_must_be()
+        self.laws.applied(transaction)
+        if adaptation.mode != "versions":
+            self._forget(adaptation.kills)
+        self.assumptions.enable()
         self.trace.record(
             "adaptation_applied", id=adaptation.id, purpose=adaptation.purpose, assumptions=self.assumptions_in_use
         )
@@ -191,7 +221,7 @@ class Reactor:
         gone = [self._loaded.pop(label) for label in labels if label in self._loaded]
         self.executer.unload([reaction.schema for reaction in gone])
         for reaction in gone:
-            self._version_of_label.pop(reaction.label, None)
+            self._lifetimes.pop(reaction.label, None)
 
     # -- what happens in it
 
@@ -232,6 +262,11 @@ class Reactor:
         self.counts["changes_applied"] += 1
         self.transactions.changed(label, added=True)
 
+    def _reaction_retired(self, label: int) -> None:
+        """It is of the structure no more, and serves what is left of its versions."""
+        del self.reactions[label]
+        self.transactions.changed(label, added=False)
+
     def _reaction_removed(self, label: int) -> None:
         self.reactions.pop(label, None)
         self.counts["changes_applied"] += 1
@@ -259,63 +294,41 @@ class Reactor:
     # -- assumptions
 
     @property
+    def failed(self) -> dict[str, float]:
+        """The assumptions that have failed, and since when."""
+        return self.assumptions.failed
+
+    @property
     def assumptions_in_use(self) -> tuple[str, ...]:
         """The assumptions that its reactions rest on, or that were brought in with them and are watched; sorted."""
-        rested_on = {a for assumptions in self._rests_on.values() for a in assumptions}
-        return tuple(sorted(rested_on | self._adopted))
+        return self.journal.state.committed.assumptions_in_use
 
     def resting_on(self, assumption: str) -> tuple[str, ...]:
-        return tuple(s for s, assumptions in self._rests_on.items() if assumption in assumptions)
+        return self.assumptions.resting_on(assumption)
 
     def assumption_sensed(self, assumption: str, holds: bool) -> None:
         """A monitor, or a process itself, says that an assumption fails, or that a failed one holds again."""
-        if holds:
-            if self.failed.pop(assumption, None) is not None:
-                self.trace.record("assumption_holds", assumption=assumption)
-                self.perceive("assumption_holds", assumption)
-                self._disable_what_must_be()
-            return
-        self.trace.record("assumption_failure", assumption=assumption)
-        self.failed.setdefault(assumption, self.scheduler.now)
-        self.perceive("assumption_failure", assumption)
-        self._disable_what_must_be()
+        self.assumptions.sensed(assumption, holds)
 
-    def _noticed(self, assumption: str, holds: bool, evidence: str) -> None:
-        """A process noticed by itself: a failure is sent again while something rests on it (nobody asks)."""
-        known = assumption in self.failed
-        self.assumption_sensed(assumption, holds)
-        if not holds and not known:
-            self._repeat_later(assumption, self.failed[assumption])
-
-    def _repeat_later(self, assumption: str, since: float) -> None:
-        def repeat() -> None:
-            if self.failed.get(assumption) == since and self.resting_on(assumption):
-                self.assumption_sensed(assumption, False)
-                self._repeat_later(assumption, since)
-
-        self.scheduler.call_after(REPEAT, repeat)
-
-    def _disable_what_must_be(self) -> None:
-        """Exactly the situations that rest on a failed assumption are disabled by it."""
-        for situation in self.situations.held:
-            for owner in [h.owner for h in situation.inhibitions if h.kind == "assumption"]:
-                assumption = str(owner[1])  # type: ignore[index]  # ("assumption", name)
-                if assumption not in self.failed or assumption not in self._rests_on.get(situation.name, ()):
-                    self.situations.enable(situation.name, assumption)
-        for assumption in self.failed:
-            for name in self.resting_on(assumption):
-                self.situations.disable(name, assumption)
+    def _assumption_told(self, kind: PerceptionKind, assumption: str) -> None:
+        self.trace.record(kind, assumption=assumption)
+        self.perceive(kind, assumption)
 
     # -- how it stands
 
-    def version_of_label(self, label: int | None) -> int:
-        """The version of its situation that a reaction belongs to."""
-        return self._version_of_label.get(label, 0) if label is not None else 0
+    def lifetime(self, label: int | None) -> Lifetime | None:
+        """The versions of its situation that a reaction belongs to; None if it is not known."""
+        return None if label is None else self._lifetimes.get(label)
 
     def is_live_owner(self, owner: Hashable) -> bool:
         if isinstance(owner, Root):
             return owner.outcome is None
         return isinstance(owner, tuple) and owner[1] in self.failed
+
+    @property
+    def restoring(self) -> bool:
+        """Is what the journal says still coming to life?"""
+        return self._restoration is not None and self._restoration.outcome is None
 
     def over_budget(self) -> str | None:
         live = self.executer.processes_live
@@ -325,7 +338,8 @@ class Reactor:
 
     @property
     def versions(self) -> dict[str, int]:
-        return dict(self._versions)
+        """The version of each situation that ever was: how often it was changed."""
+        return dict(self.journal.state.committed.versions)
 
     def text(self) -> str:
         """The reactor as a program that can be run: equation (3) with its present reactions."""

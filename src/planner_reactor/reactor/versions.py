@@ -8,7 +8,16 @@ from the beginning, and has no guard, serves all.
 from __future__ import annotations
 
 from collections.abc import Hashable
+from dataclasses import dataclass
 from math import inf
+
+
+@dataclass(slots=True, eq=False)
+class Lifetime:
+    """The first and the last version of its situation that a reaction belongs to, as adaptations have it."""
+
+    first: int
+    last: float = inf
 
 
 class Versions:

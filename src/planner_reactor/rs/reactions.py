@@ -61,20 +61,47 @@ class Surgery(msgspec.Struct, frozen=True, kw_only=True):
     kills: tuple[int, ...] = ()
     adds: tuple[int, ...] = ()
     named: tuple[str, ...] = ()
+    removed: tuple[str, ...] = ()  # of `named`: nothing serves them afterwards
+    number: int | None = None  # what COMMIT makes durable: the id of the adaptation
 
 
 def drain_script(surgery: Surgery) -> Process:
-    """Safe adaptation as a process: `DRAIN[top] : … : KILL[old] : … : POST[new] : … : UNINHIBIT[top]`."""
+    """Safe adaptation: `DRAIN[top] : … : COMMIT[id] : KILL[old] : … : POST[new] : … : UNINHIBIT[top]`."""
     return _script([Call("DRAIN", (Symbol(s),)) for s in surgery.held], surgery, surgery.held)
 
 
 def wait_script(surgery: Surgery) -> Process:
-    """The papers' (R §5.5): WAITINHIBIT on the highest situation whose reactions change."""
-    return _script([Call("WAITINHIBIT", (Symbol(s),)) for s in surgery.held[:1]], surgery, surgery.held[:1])
+    """The papers' (R §5.5): WAITINHIBIT, top-down, on every situation whose reactions change."""
+    return _script([Call("WAITINHIBIT", (Symbol(s),)) for s in surgery.held], surgery, surgery.held)
+
+
+def versions_script(surgery: Surgery, killed: Iterable[Reaction]) -> Process:
+    """Old and new beside each other: `COMMIT[id] : RETIRE[old] : … : RENEW[s] : … : POST[new] : …`, in an instant."""
+    steps = [
+        *_commit(surgery),
+        *(Call("RETIRE" if r.situation is not None else "KILL", (Number(r.label),)) for r in killed),
+        *(Call("RENEW", (Symbol(s),)) for s in surgery.held if s not in surgery.removed),
+        *(Call("POST", (Number(n),)) for n in surgery.adds),
+    ]
+    return cond(*steps) if steps else STOP
+
+
+def removal_script(surgery: Surgery, killed: Iterable[Reaction]) -> Process:
+    """What was retired goes, top-down, once nothing is left that it may serve: `WAITOLD[s] : KILL[old] : …`."""
+    steps: list[Process] = []
+    for reaction in killed:
+        if (situation := reaction.situation) is not None:
+            wait = "WAIT" if situation in surgery.removed else "WAITOLD"
+            steps += [Call(wait, (Symbol(situation),)), Call("KILL", (Number(reaction.label),))]
+    return cond(*steps) if steps else STOP
+
+
+def _commit(surgery: Surgery) -> list[Process]:
+    return [] if surgery.number is None else [Call("COMMIT", (Number(surgery.number),))]
 
 
 def _script(hold: list[Process], surgery: Surgery, held: tuple[str, ...]) -> Process:
-    steps = [*hold, *(Call("KILL", (Number(n),)) for n in surgery.kills)]
+    steps = [*hold, *_commit(surgery), *(Call("KILL", (Number(n),)) for n in surgery.kills)]
     steps += [Call("POST", (Number(n),)) for n in surgery.adds]
     steps += [Call("UNINHIBIT", (Symbol(s),)) for s in reversed(held)]
     return cond(*steps) if steps else STOP
