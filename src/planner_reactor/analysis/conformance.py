@@ -62,10 +62,11 @@ class Follower:
         if not patient:
             wanted = sorted({str(s.label) for c in self.configs for s in steps(c, self._world) if s.urgent})
             raise Disagreement(f"{seconds} s passed though something is urgent: {'; '.join(wanted)}")
-        allowed = [c for c in patient if slack(c, self._world) >= seconds - TOLERANCE]
+        room = [(c, slack(c, self._world)) for c in patient]
+        allowed = [(c, most) for c, most in room if most >= seconds - TOLERANCE]
         if not allowed:
-            raise Disagreement(f"{seconds} s passed, at most {max(slack(c, self._world) for c in patient)} allowed")
-        self.configs = _different([elapsed(c, min(seconds, slack(c, self._world)), self._world) for c in allowed])
+            raise Disagreement(f"{seconds} s passed, at most {max(most for _, most in room)} allowed")
+        self.configs = _different([elapsed(c, min(seconds, most), self._world) for c, most in allowed])
 
     def ended(self, root: int, *, ok: bool, results: Bindings) -> None:
         """The run says that this root (1, 2, …) has ended so."""

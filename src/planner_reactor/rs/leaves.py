@@ -151,6 +151,8 @@ def window(leaf: Leaf, world: World) -> tuple[float, float]:
 
 def _mistaken(leaf: Leaf, world: World) -> bool:
     """Is an argument not what the basic process declares? Then it aborts at once."""
+    if not leaf.arguments:
+        return False
     signature = world.signatures.get(leaf.name)
     kinds = [signature.kind(n) for n in range(len(leaf.arguments))] if signature is not None else []
     return any(

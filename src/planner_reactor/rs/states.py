@@ -326,21 +326,26 @@ def spots(
     path: Path = (),
     guard: Value | None = None,
     owner: InstanceNumber | None = None,
-) -> Iterator[Spot]:
+) -> list[Spot]:
     """Every live leaf, left to right, with the guard and the instance that enclose it."""
+    found: list[Spot] = []
     waiting = [(term, path, guard, owner)]
     while waiting:
         term, path, guard, owner = waiting.pop()
+        below = 0
         while (field := _LIVE.get(term.__class__)) is not None:
-            owner = term.instance if isinstance(term, Serve) else owner
-            term, path = getattr(term, field), (*path, 0)
+            owner = term.instance if term.__class__ is Serve else owner  # type: ignore[union-attr]
+            term = getattr(term, field)
+            below += 1
+        if below:
+            path += (0,) * below
         if isinstance(term, Leaf | Await | Queued | Waiting):
-            yield Spot(root, path, term, guard, owner)
-            continue
-        label = guard_of(term)
-        guard = guard if label is None else label
-        parts = parts_of(term)
-        waiting += [(parts[i], (*path, i), guard, owner) for i in range(len(parts) - 1, -1, -1)]
+            found.append(Spot(root, path, term, guard, owner))
+        elif parts := parts_of(term):
+            label = guard_of(term)
+            guard = guard if label is None else label
+            waiting += [(parts[i], (*path, i), guard, owner) for i in range(len(parts) - 1, -1, -1)]
+    return found
 
 
 # ----------------------------------------------------------------------------------------------- bindings
