@@ -11,13 +11,17 @@ from typing import Any
 
 from planner_reactor.analysis.labels import show_label
 from planner_reactor.analysis.lassos import Lasso
-from planner_reactor.analysis.notation import names_of, read_property
+from planner_reactor.analysis.notation import Names, names_of, read_property
+from planner_reactor.analysis.observing import EVENTS, Atom
 from planner_reactor.analysis.properties import Verdict, check, deadlock_free, zeno_free
+from planner_reactor.analysis.refinement import ENDINGS, Refinement
+from planner_reactor.analysis.refinement import refines as refined
 from planner_reactor.analysis.systems import LIMIT, build
-from planner_reactor.analysis.temporal import atoms
+from planner_reactor.analysis.temporal import Here, atoms
 from planner_reactor.calls.hosts import HostSource
 from planner_reactor.calls.inputs import whole
-from planner_reactor.calls.processes import subject
+from planner_reactor.calls.processes import Subject, subject
+from planner_reactor.errors import InputError
 
 
 def verify(
@@ -25,17 +29,21 @@ def verify(
     process: str,
     *,
     properties: Iterable[str] = (),
+    refines: str | None = None,
+    seeing: Iterable[str] = (),
     host: HostSource | None = None,
     limit: int = LIMIT,
 ) -> dict[str, Any]:
     """Check `process`, a call such as `Main`, beside the definitions of a file `*.rsl`.
 
+    `refines` names another process of the file: can `process` do at least what that one can, as far as the atoms in
+    `seeing` (`sent kit`, `succeeded Kit`) tell?
     `properties` are in the notation of `analysis.notation`; at most `limit` states are looked at. Returns
-    `deadlock_free` and `zeno_free` (None: not decided within the limit), `properties` (each with `property`, `holds`,
-    `counterexample`, `cycle`), `refuted` (what was refuted first, or None), its `counterexample` (the steps) and
-    `cycle` (how many of them, at the end, go round for ever), `then` (what follows them: "round", "nothing", or
-    "anything", as all is decided), `states` and `complete`. Raises SourceError for a wrong text or property, InputError
-    for a wrong argument.
+    `deadlock_free`, `zeno_free` and `refines` (None: not asked, or not decided within the limit), `properties` (each
+    with `property`, `holds`, `counterexample`, `cycle`, `then`), `refuted` (what was refuted first, or None), its
+    `counterexample` (the steps), `cycle` (how many of them, at the end, go round for ever) and `then` (what follows
+    them: "round", "nothing", or "anything", as all is decided), `states` and `complete`. Raises SourceError for a wrong
+    text or property, InputError for a wrong argument.
     """
     limit = whole("limit", limit, 1)
     asked = subject(file, process, host=host)
@@ -46,13 +54,47 @@ def verify(
     )
     verdicts = {"deadlock_free": deadlock_free(system), "zeno_free": zeno_free(system)}
     checked = [(str(p), check(system, p)) for p in read]
+    compared = _compared(asked, file, refines, tuple(seeing), names, host, limit)
+    if compared is not None:
+        found = Lasso(compared.run, (), decided=True) if compared.holds is False else None
+        verdicts[f"refines {refines}"] = Verdict(compared.holds, found)
     return {
-        **{name: verdict.holds for name, verdict in verdicts.items()},
+        "deadlock_free": verdicts["deadlock_free"].holds,
+        "zeno_free": verdicts["zeno_free"].holds,
+        "refines": compared.holds if compared is not None else None,
         "properties": [{"property": text, "holds": v.holds, **_shown(v.counterexample)} for text, v in checked],
         **_first_refuted([*verdicts.items(), *checked]),
         "states": len(system.states),
         "complete": system.complete,
     }
+
+
+def _compared(
+    asked: Subject,
+    file: str | Path,
+    refines: str | None,
+    seeing: tuple[str, ...],
+    names: Names,
+    host: HostSource | None,
+    limit: int,
+) -> Refinement | None:
+    if refines is None:
+        if seeing:
+            raise InputError("seeing: what is to be seen is asked for with `refines` only")
+        return None
+    old = subject(file, refines, host=host)
+    seen = tuple(_seen(text, names) for text in seeing)
+    if not seen:
+        raise InputError("refines: expected what is to be seen, such as `--seeing 'succeeded Kit'`")
+    return refined(*(build(one.start, one.world, seen, limit=limit) for one in (asked, old)))
+
+
+def _seen(text: str, names: Names) -> Atom:
+    """An atom that tells of a step, alone."""
+    formula = read_property(text, names).formula
+    if not isinstance(formula, Here) or formula.atom.word not in (*EVENTS, *ENDINGS):
+        raise InputError(f"seeing: {text} is not a step, expected one of: {', '.join(EVENTS)}")
+    return formula.atom
 
 
 def _first_refuted(verdicts: Iterable[tuple[str, Verdict]]) -> dict[str, Any]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -25,6 +26,12 @@ def verify(
     property: Annotated[
         list[str] | None, typer.Option("--property", metavar="TEXT", help="What every run is to have; may be repeated.")
     ] = None,
+    refines: Annotated[
+        str | None, typer.Option("--refines", metavar="'OLD[args]'", help="Can it do at least what this one can?")
+    ] = None,
+    seeing: Annotated[
+        list[str] | None, typer.Option("--seeing", metavar="ATOM", help="What is seen of both; may be repeated.")
+    ] = None,
     host: options.HostModule = None,
     limit: Annotated[int, typer.Option("--limit", metavar="N", help="Look at no more states.")] = 100_000,
     adapt: Annotated[
@@ -39,18 +46,27 @@ def verify(
     from planner_reactor.calls import verifying
 
     with reserved_output():
-        result = verifying.verify(file, process, properties=property or (), host=host, limit=limit)
+        result = verifying.verify(
+            file, process, properties=property or (), refines=refines, seeing=seeing or (), host=host, limit=limit
+        )
     if as_json:
         print_json(result)
     else:
-        _show(result)
-    verdicts = (result["deadlock_free"], result["zeno_free"], *(p["holds"] for p in result["properties"]))
-    return 0 if all(verdict is True for verdict in verdicts) else 1
+        _show(result, refines)
+    return 0 if all(verdict is True for _, verdict in _verdicts(result, refines)) else 1
 
 
-def _show(result: dict[str, Any]) -> None:
-    rows = [("deadlock_free", result["deadlock_free"]), ("zeno_free", result["zeno_free"])]
-    for name, verdict in [*rows, *((p["property"], p["holds"]) for p in result["properties"])]:
+def _verdicts(result: dict[str, Any], refines: str | None) -> Iterator[tuple[str, bool | None]]:
+    yield "deadlock_free", result["deadlock_free"]
+    yield "zeno_free", result["zeno_free"]
+    if refines is not None:
+        yield f"refines {refines}", result["refines"]
+    for found in result["properties"]:
+        yield found["property"], found["holds"]
+
+
+def _show(result: dict[str, Any], refines: str | None) -> None:
+    for name, verdict in _verdicts(result, refines):
         print(f"{name}: {VERDICTS[verdict]}")
     if result["refuted"] is not None:
         print(f"counterexample to {result['refuted']}:")
