@@ -94,11 +94,12 @@ class _Texts:
         self.draw = random.Random(seed)
         self.names = 0
         self.calls: tuple[str, ...] = ()
-        self.depth = self.draw.choice([0, 1, 1, 1, 2, 2, 3])
+        self.large = seed % 4 == 0  # most are small: what two parts do to each other shows in few of them
+        self.depth = self.draw.choice([1, 1, 2, 2, 3]) if self.large else self.draw.choice([0, 0, 1, 1, 2])
 
     def example(self) -> Example:
         draw = self.draw
-        definitions = self.definitions() if draw.random() < 0.35 else []
+        definitions = self.definitions() if draw.random() < (0.4 if self.large else 0.15) else []
         if draw.random() < 0.5:
             roots = [self.process(self.depth + 1, []) for _ in range(draw.choice([1, 1, 1, 2]))]
         else:
@@ -132,9 +133,10 @@ class _Texts:
 
     def reactor(self, definitions: list[str]) -> list[str]:
         draw = self.draw
-        served = [self.reaction(s) for s in ("s", "t") for _ in range(draw.choice([1, 1, 1, 2]))]
+        twice = [1, 1, 2] if self.large else [1]
+        served = [self.reaction(s) for s in ("s", "t") for _ in range(draw.choice(twice))]
         guarded = [f"(E[{n}] # {text})" if draw.random() < 0.6 else text for n, text in enumerate(served, 1)]
-        drivers = [f"({self.process(self.depth, [], True)})" for _ in range(draw.choice([1, 1, 2]))]
+        drivers = [f"({self.process(self.depth, [], True)})" for _ in range(draw.choice(twice))]
         if draw.random() < 0.3:  # a reaction without a SIT, as the root reactions of R Fig. 8
             drivers[0] = f"(E[3] # {drivers[0]})"
         if draw.random() < 0.4:
@@ -144,7 +146,7 @@ class _Texts:
             guarded.append("STREAM[p, 1]")
         if draw.random() < 0.3:  # bodies are cut
             guarded[0] = f"({guarded[0]} # {draw.choice(['Delay[1]', 'Slow', 'Term[2]', 'Delay[1.5]'])})"
-        scripts = [self.script() for _ in range(draw.choice([0, 1, 1, 2]))]
+        scripts = [self.script() for _ in range(draw.choice([0, 1, 1, 2] if self.large else [0, 1]))]
         return [" | ".join([*guarded, *drivers]), *scripts]
 
     def reaction(self, situation: str) -> str:
