@@ -6,7 +6,7 @@ BIN    := $(VENV)/bin
 PIP    := $(BIN)/python -m pip --disable-pip-version-check install --quiet --constraint constraints.txt
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test check figures bench docs conformance clean
+.PHONY: help demo test check figures bench docs conformance laws mutants clean
 
 help:  ## list the targets
 	@grep -hE '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## */  make \1\t/' | expand -t 22
@@ -33,6 +33,12 @@ docs: $(VENV)/dev.done  ## the pages of docs/ that are made from code
 
 conformance: $(VENV)/dev.done  ## a million random programs, executer against semantics; resumes where it stopped
 	$(BIN)/python -m tests.conformance
+
+laws: $(VENV)/dev.done  ## each law on 10,000 random terms, under every equivalence
+	LAW_TERMS=10000 $(BIN)/python -m pytest -n 2 tests/rs/test_laws.py
+
+mutants: $(VENV)/dev.done  ## every small change to the rules meets the tests; the table of docs/analysis.md
+	nice -n 10 $(BIN)/python -m tests.mutants
 
 clean:  ## forget what was made
 	rm -rf out $(VENV) .pytest_cache .mypy_cache .ruff_cache .hypothesis .import_linter_cache

@@ -16,6 +16,7 @@ from planner_reactor.cli.application import NAME
 from planner_reactor.cli.later import LATER
 from planner_reactor.logic import itl_syntax
 from planner_reactor.rs import grammar, states
+from tests.laws.telling import laws, non_laws
 from tests.transcripts import examples
 
 ROOT = Path(__file__).parent.parent
@@ -140,6 +141,8 @@ MADE: Mapping[str, Callable[[], str]] = {
     "imports": _imports,
     "itl_grammar": lambda: _indented_in(itl_syntax),
     "later": _later,
+    "laws": laws,
+    "non_laws": non_laws,
     "runtime_terms": lambda: _indented_in(states),
 }
 

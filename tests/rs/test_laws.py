@@ -1,204 +1,113 @@
-"""The algebraic laws of docs/language.md, on random terms: those that hold, and those that must fail."""
+"""The algebraic laws of docs/language.md on random terms in random contexts, and what is no law.
+
+`LAW_TERMS` sets on how many distinct instances each law is checked under each equivalence: 1,000 in `make test`,
+10,000 in `make laws`, which also decides every equivalence by its own procedure on every instance.
+"""
 
 from __future__ import annotations
 
-from itertools import count
+import os
 
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
-from planner_reactor.analysis.equivalence import behaviour, bisimilar
-from planner_reactor.rs.configurations import World
+from planner_reactor.analysis.equivalence import behaviour, bisimilar, same
 from planner_reactor.rs.parser import parse_process
-from planner_reactor.rs.terms import (
-    ABORT,
-    NIL,
-    STOP,
-    All,
-    Call,
-    Cond,
-    Disable,
-    If,
-    Loop,
-    Not,
-    Number,
-    Par,
-    Process,
-    Seq,
-    Spawn,
-    cond,
-    seq,
+from tests.laws.checking import checked, differing, size, smallest
+from tests.laws.table import EQUIVALENCES, LAWS, NON_LAWS, STRONG, TIMED, Law, filled
+from tests.laws.terms import WORLD
+from tests.laws.universe import Universe
+
+TERMS = int(os.environ.get("LAW_TERMS", "1000"))
+INDEPENDENT = TERMS if TERMS > 1000 else 100
+LONG = pytest.mark.timeout(20 if TERMS <= 1000 else 3600)
+
+named = {"ids": lambda law: law.name}
+
+
+def assert_holds(law: Law, *, timed: bool) -> None:
+    found = checked(law, TERMS, timed=timed, independent=INDEPENDENT)
+    assert not found.failures, found.failures[:3]
+    assert set(found.counts.values()) == {TERMS}
+
+
+@LONG
+@pytest.mark.parametrize("law", LAWS, **named)
+def test_a_law_holds_for_random_terms(law: Law) -> None:
+    assert_holds(law, timed=False)
+
+
+@LONG
+@pytest.mark.parametrize("law", [law for law in LAWS if TIMED in law.equivalences], **named)
+def test_a_law_holds_for_random_terms_with_delays(law: Law) -> None:
+    assert_holds(law, timed=True)
+
+
+def test_there_are_laws_enough_and_each_is_checked_under_some_equivalence() -> None:
+    assert sum(len(law.equivalences) == len(EQUIVALENCES) for law in LAWS) >= 20
+    assert all(law.equivalences for law in LAWS)
+
+
+@pytest.mark.parametrize("law", NON_LAWS, **named)
+def test_what_is_no_law_has_a_counterexample_and_none_is_smaller(law: Law) -> None:
+    found = smallest(law)
+    assert found is not None
+    assert not any(True for n in range(len(law.names), found.size) for _ in differing(law, n))
+    left, right = (filled(parse_process(side), found.terms) for side in (law.left, law.right))
+    assert sum(map(size, found.terms.values())) == found.size
+    assert not bisimilar(left, right, WORLD)
+    assert found.left != found.right
+
+
+@pytest.mark.parametrize("law", NON_LAWS, **named)
+def test_what_is_no_law_is_found_among_random_terms_too(law: Law) -> None:
+    found = checked(law, 200, timed=False, independent=200)
+    assert {equivalence for equivalence, *_ in found.failures} >= {STRONG}
+
+
+@pytest.mark.parametrize("law", [law for law in LAWS if law.condition], **named)
+def test_a_law_with_a_condition_fails_without_it(law: Law) -> None:
+    bare = Law(law.left, law.right, context=law.context, guarded=law.guarded)
+    assert checked(bare, 500, timed=False, independent=500).failures
+
+
+@pytest.mark.parametrize("law", [law for law in LAWS if law.not_in], **named)
+def test_a_law_fails_under_an_equivalence_that_it_does_not_claim(law: Law) -> None:
+    bare = Law(law.left, law.right, context=law.context, guarded=law.guarded)
+    failing = {equivalence for equivalence, *_ in checked(bare, 200, timed=False, independent=200).failures}
+    assert failing <= set(law.not_in) - {TIMED}
+    assert failing
+
+
+@pytest.mark.parametrize(
+    ("left", "right"),
+    [("a;(b|c)", "a;(c|b)"), ("a;STOP", "a"), ("a|a", "a"), ("IN[p]<x> | OUT[p, 1] ; Delay[1]", "Delay[1]")],
 )
-from planner_reactor.rs.vocabulary import Signature
-
-INFINITY = float("inf")
-BASIC = {n: Signature(n, (), ("x",), window=(0.0, INFINITY)) for n in "abc"}
-UNTIMED = World(signatures=BASIC, endings=lambda name, arguments: [(True, (name,)), (False, (name,))])
-
-FEW = settings(max_examples=40, deadline=None)
-
-
-@st.composite
-def terms(draw: st.DrawFn, depth: int = 2, timed: bool = False) -> Process:
-    """A small closed process over basic processes that may end either way at any time."""
+def test_many_terms_at_once_are_compared_as_two_are_alone(left: str, right: str) -> None:
+    p, q = parse_process(left), parse_process(right)
+    universe = Universe(WORLD)
+    states = universe.first(p), universe.first(q)
+    for bindings in (False, True):
+        classes = universe.classes(states, bindings=bindings)
+        assert (classes[states[0]] == classes[states[1]]) == bisimilar(p, q, WORLD, bindings=bindings)
 
 
-    def leaf() -> Process:
-        kind = draw(st.sampled_from(["a", "b", "c", "STOP", "ABORT", "delay" if timed else "a"]))
-        if kind == "delay":
-            return Call("Delay", (Number(draw(st.sampled_from([1, 2, 3]))),))
-        if kind in ("STOP", "ABORT"):
-            return Call(kind)
-        return Call(kind, (), ("x",))
-
-    def term(depth: int) -> Process:
-        if depth == 0 or draw(st.integers(0, 3)) == 0:
-            return leaf()
-        kind = draw(st.sampled_from([";", ":", "|", "&", "#", "~", "if"]))
-        if kind == "~":
-            return Not(term(depth - 1))
-        if kind == "if":
-            return If(term(depth - 1), term(depth - 1), term(depth - 1))
-        left, right = term(depth - 1), term(depth - 1)
-        return {";": lambda: seq(left, right), ":": lambda: cond(left, right)}.get(
-            kind, lambda: {"|": Par, "&": All, "#": Disable}[kind]((left, right))
-        )()
-
-    return term(depth)
-
-
-def apart(*processes: Process) -> tuple[Process, ...]:
-    """The same processes with result names that are all different."""
-    counter = count(1)
-
-    def renamed(p: Process) -> Process:
-        match p:
-            case Call(name, arguments, results):
-                return Call(name, arguments, tuple(f"x{next(counter)}" for _ in results))
-            case Not(body):
-                return Not(renamed(body))
-            case If(test, then, otherwise):
-                return If(renamed(test), renamed(then), renamed(otherwise))
-            case Loop() | Spawn():
-                raise AssertionError
-            case _:
-                return type(p)(tuple(renamed(q) for q in p.parts))
-
-    return tuple(renamed(p) for p in processes)
-
-
-def same(p: Process, q: Process, *, bindings: bool = True) -> bool:
-    return bisimilar(p, q, UNTIMED, bindings=bindings)
-
-
-SMALL = terms(depth=1)
-TINY = terms(depth=0)
-
-
-@FEW
-@given(SMALL, SMALL, TINY)
-def test_concurrency_is_commutative_and_associative(p: Process, q: Process, r: Process) -> None:
-    p, q, r = apart(p, q, r)
-    for operator in (Par, All):
-        assert same(operator((p, q)), operator((q, p)))
-        assert same(operator((operator((q, r)), p)), operator((q, operator((r, p)))))
-        assert same(operator((operator((q, r)), p)), operator((q, r, p)))
-
-
-@FEW
-@given(SMALL, SMALL, TINY)
-def test_disabling_is_commutative_and_associative_where_no_two_end_at_once(p: Process, q: Process, r: Process) -> None:
-    p, q, r = apart(p, q, r)
-    assert same(Disable((p, q)), Disable((q, p)), bindings=False)
-    assert same(Disable((Disable((p, q)), r)), Disable((p, Disable((q, r)))), bindings=False)
-
-
-@FEW
-@given(SMALL, SMALL, TINY)
-def test_sequence_and_condition_are_associative(p: Process, q: Process, r: Process) -> None:
-    p, q, r = apart(p, q, r)
-    assert same(Seq((Seq((p, q)), r)), seq(p, seq(q, r)))
-    assert same(Cond((Cond((p, q)), r)), cond(p, cond(q, r)))
-    assert same(Cond((Seq((p, q)), r)), seq(p, cond(q, r)))
-
-
-@FEW
-@given(terms(), SMALL)
-def test_negation_is_its_own_inverse_and_passes_a_sequence(p: Process, q: Process) -> None:
-    p, q = apart(p, q)
-    assert same(Not(Not(p)), p)
-    assert same(Not(seq(p, q)), seq(p, Not(q)))
-
-
-@FEW
-@given(terms())
-def test_the_units_of_sequence_and_condition(p: Process) -> None:
-    p, = apart(p)
-    assert same(seq(STOP, p), p)
-    assert same(seq(ABORT, p), p)
-    assert same(cond(STOP, p), p)
-    assert same(cond(p, STOP), p)
-    assert same(cond(ABORT, p), ABORT)
-
-
-@FEW
-@given(terms())
-def test_stop_and_abort_beside_a_process(p: Process) -> None:
-    p, = apart(p)
-    assert same(Par((p, ABORT)), p)
-    assert same(Par((p, STOP)), seq(p, STOP))
-    assert same(Disable((p, STOP)), STOP, bindings=False)
-    assert same(Disable((p, NIL)), p)
-
-
-@FEW
-@given(SMALL, TINY)
-def test_the_loops_unfold(a: Process, b: Process) -> None:
-    a, b = apart(a, b)
-    basic = Call("a")  # a condition that takes a step, so that no round passes silently
-    condition = cond(basic, a)
-    loop = Loop(condition, b)
-    assert same(loop, cond(condition, seq(b, loop)), bindings=False)
+def test_traces_do_not_see_when_a_choice_is_made_and_bisimilarity_does() -> None:
+    early, late = "(a:(b#NIL)) # (a:(c#NIL))", "a:(b#c#NIL)"
+    universe = Universe(WORLD)
+    p, q = universe.first(parse_process(early)), universe.first(parse_process(late))
+    ends = universe.ends(bindings=False)
+    assert universe.included(q, p, ends) != universe.included(p, q, ends)
 
 
 @pytest.mark.parametrize("body", ["a", "a;b", "a#b", "ABORT", "STOP", "~a", "Delay[1]"])
 def test_spawning_unfolds_into_a_concurrent_body(body: str) -> None:
     left = parse_process(f"(IN[p]<x> :: ({body})) | (OUT[p, 1] ; OUT[p, 2])")
     right = parse_process(f"(IN[p]<x> : (({body}) | (IN[p]<y> :: ({body})))) | (OUT[p, 1] ; OUT[p, 2])")
-    assert same(left, right, bindings=False)
+    assert same(behaviour(left, WORLD), behaviour(right, WORLD))
 
 
 @pytest.mark.parametrize(("body", "outcome"), [("STOP", True), ("ABORT", False), ("Delay[1]", True)])
 def test_spawning_stops_if_a_body_stopped_though_its_condition_aborted(body: str, outcome: bool) -> None:
     once = parse_process(f"((IN[p]<x> : GTR[x, 0]) :: ({body})) | ((OUT[p, 1] ; OUT[p, 0]) : ABORT)")
-    ends = {end for end in behaviour(once, UNTIMED).ends if end is not None}
+    ends = {end for end in behaviour(once, WORLD).ends if end is not None}
     assert ends == {outcome}
-
-
-@FEW
-@given(terms(timed=True), terms(depth=1, timed=True))
-def test_laws_hold_with_delays_too(p: Process, q: Process) -> None:
-    p, q = apart(p, q)
-    assert same(Par((p, q)), Par((q, p)))
-    assert same(Not(seq(p, q)), seq(p, Not(q)))
-    assert same(Disable((p, STOP)), STOP, bindings=False)
-
-
-NON_LAWS = {
-    "(P:Q);R = P:(Q;R)": ("(a:b);c", "a:(b;c)"),
-    "~(P:Q) = ~P:~Q": ("~(a:b)", "~a:~b"),
-    "~(P|Q) = ~P|~Q": ("~(a|b)", "~a|~b"),
-    "P;STOP = P": ("a;STOP", "a"),
-    "P|STOP = P": ("a|STOP", "a"),
-    "P|P = P": ("a|a", "a"),
-    "P#P = P with two different ends": ("(a;b)#(a;b)", "a;b"),
-    "; over |": ("a;(b|c)", "(a;b)|(a;c)"),
-    ": over #": ("a:(b#c)", "(a:b)#(a:c)"),
-    "& is |": ("a&b", "a|b"),
-}
-
-
-@pytest.mark.parametrize(("left", "right"), NON_LAWS.values(), ids=list(NON_LAWS))
-def test_what_is_no_law_fails(left: str, right: str) -> None:
-    assert not same(parse_process(left), parse_process(right), bindings=False)

@@ -1,0 +1,1 @@
+"""The algebra's laws as data, the random terms that they are tried on, and the search for counterexamples."""
