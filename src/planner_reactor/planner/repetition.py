@@ -7,7 +7,7 @@ cost little more than one.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import msgspec
 from msgspec.structs import replace
@@ -24,13 +24,13 @@ class Part(msgspec.Struct, frozen=True):
     """Steps and links of a plan that solve one group of goals, with what their variables stand for.
 
     `values` are those of the variables of each step, `reached` those of the arguments of each goal; `orders` say
-    how the steps lie to each other and to those before them. `entangled`: a link begins at a step of another
-    part, so that it cannot be repeated.
+    how the steps lie to each other and to the others. Steps that have nothing to do with the constants of the
+    group are not among them: what is needed once serves all groups. `entangled`: a link begins at a step of
+    another part, so that it cannot be repeated.
     """
 
     goals: tuple[Atom, ...]
     reached: tuple[tuple[Term, ...], ...]
-    first: int
     steps: tuple[Step, ...]
     values: tuple[tuple[Term, ...], ...]
     links: tuple[Link, ...]
@@ -38,23 +38,41 @@ class Part(msgspec.Struct, frozen=True):
     entangled: bool
 
 
-def part_of(plan: Plan, goals: tuple[Atom, ...], first: int, start: int) -> Part:
+def part_of(theory: Theory, plan: Plan, goals: tuple[Atom, ...], first: int, start: int) -> Part:
     """The part `steps[first:]`, `links[start:]` of a plan, which solves these goals."""
     walk, ground = plan.bindings.walk, plan.bindings.ground
-    steps = tuple(plan.steps[first:])
-    own = {step.number for step in steps}
-    numbers = [*own, *(step.number for step in plan.steps[:first])]
+    values = {s.number: tuple([walk(s.offset + v) for v in range(s.schema.size)]) for s in plan.steps[first:]}
+    own = _own(theory, goals, values)
+    steps = tuple([step for step in plan.steps[first:] if step.number in own])
+    links = [link for link in plan.links[start:] if link.consumer not in values or link.consumer in own]
+    numbers = [step.number for step in plan.steps]
     relation = plan.network.relation
     return Part(
         goals,
         tuple(ground(goal).arguments for goal in goals),
-        first,
         steps,
-        tuple(tuple([walk(step.offset + v) for v in range(step.schema.size)]) for step in steps),
-        tuple(replace(link, atom=ground(link.atom)) for link in plan.links[start:]),
-        tuple((a, b, r) for a in own for b in numbers if a != b and (r := relation(a, b)) != ALL),
-        any(link.producer >= plan.first and link.producer not in own for link in plan.links[start:]),
+        tuple([values[step.number] for step in steps]),
+        tuple(replace(link, atom=ground(link.atom)) for link in links),
+        tuple((a, b, r) for a in values if a in own for b in numbers if a != b and (r := relation(a, b)) != ALL),
+        any(link.producer >= plan.first and link.producer not in values for link in plan.links[start:]),
     )
+
+
+def _own(theory: Theory, goals: tuple[Atom, ...], values: Mapping[int, tuple[Term, ...]]) -> set[int]:
+    """The steps that speak of the group's constants, or hand things to or take things from one that does."""
+    constants = {a for goal in goals for a in goal.arguments if isinstance(a, str) and a in theory.alike}
+    own = {number for number, terms in values.items() if not constants.isdisjoint(terms)}
+    changed = True
+    while changed:
+        before = len(own)
+        for number, terms in values.items():
+            things = {t.step for t in terms if isinstance(t, Result | Unnamed)}
+            if number in own:
+                own |= things & values.keys()
+            elif not things.isdisjoint(own):
+                own.add(number)
+        changed = len(own) > before
+    return own if constants else set(values)
 
 
 def pattern(theory: Theory, beliefs: Beliefs, plan: Plan, goals: Sequence[Goal]) -> object:
@@ -107,8 +125,8 @@ class _Mapping:
     def __init__(self, plan: Plan, part: Part, goals: Sequence[Goal]) -> None:
         self._plan = plan
         self._part = part
-        self._own = {step.number for step in part.steps}
-        self._shift = len(plan.steps) - part.first
+        new = plan.first + len(plan.steps)
+        self._steps = {step.number: new + n for n, step in enumerate(part.steps)}
         self._constants: dict[Term, Term] = {}
         for old, goal in zip(part.goals, goals, strict=True):
             for a, b in zip(old.arguments, plan.bindings.ground(goal.atom).arguments, strict=True):
@@ -116,14 +134,14 @@ class _Mapping:
                     self._constants[a] = b
 
     def __call__(self, term: Term) -> Term:
-        if type(term) is Result and term.step in self._own:
-            return Result(term.step + self._shift, term.number)
-        if type(term) is Unnamed and term.step in self._own:
-            return Unnamed(term.step + self._shift, term.number)
+        if type(term) is Result and term.step in self._steps:
+            return Result(self._steps[term.step], term.number)
+        if type(term) is Unnamed and term.step in self._steps:
+            return Unnamed(self._steps[term.step], term.number)
         return self._constants.get(term, term)
 
     def step(self, number: int) -> int:
-        return number + self._shift if number in self._own else number
+        return self._steps.get(number, number)
 
     def bind_goals(self, goals: Sequence[Goal]) -> None:
         """The open variables of the goals stand for what those of the part stand for."""

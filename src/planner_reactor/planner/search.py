@@ -167,7 +167,7 @@ class Search:
             if not (yield from self._deepen(group)):
                 return False
             self.nodes = nodes
-            solved.setdefault(key, part_of(plan, goals, first, start))
+            solved.setdefault(key, part_of(self.problem.theory, plan, goals, first, start))
         return True
 
     def _is_complete(self, steps: int) -> bool:
