@@ -85,13 +85,14 @@ class _Search:
     def __init__(
         self, process: Process, world: World, sensors: tuple[str, ...], ports: Collection[Value] | None
     ) -> None:
-        self._process = process
         self._whole = world
         self._tree: Network = network(process, world, whole=sensors)
         self._components = self._tree.components
         self._world = bounded(world, [c.name for c in self._components if isinstance(c, Call)], sensors)
         self._sensors = sensors
         self._ports = open_ports(self._components, world) if ports is None else ports
+        self._bounds = {*sensors, *(name for name in self._world.signatures if name.endswith(MARK))}
+        self._unhurried: dict[Run, Run] = {}
         self._found: list[Limit] = []
         self._seen: dict[Config, list[Condition]] = {}
         self.states = 0
@@ -99,7 +100,7 @@ class _Search:
     def run(self, limit: int) -> LimitSet:
         waiting: deque[tuple[State, Condition]] = deque()
         for config, supposed in courses(self._begun, (), consistent):
-            waiting.append((State(config, supposed), supposed))
+            waiting += self._arrived(State(config, supposed), supposed)
         while waiting and self.states < limit:
             state, condition = waiting.popleft()
             self.states += 1
@@ -110,23 +111,31 @@ class _Search:
         config = Config()
         for component in self._components:
             config = started(component, self._world, config=config)
-        return untimed(config)
+        return self._untimed(config)
+
+    def _untimed(self, config: Config) -> Config:
+        """What one step has changed is looked at once."""
+        return untimed(config, self._unhurried)
 
     # ---------------------------------------------------------------------------------------------- one state
 
     def _followed(self, state: State, condition: Condition) -> Iterator[tuple[State, Condition]]:
-        """The states after this one, unless it is a limit or has been met."""
-        state = self._unfolded(state)
-        limits = list(self._limits(state))
-        if limits or not (moves := self._moves(state, condition)):
-            for found in limits or [Limit((), Residuals({}).network(state.config, self._world), "stuck")]:
-                self._add(found, condition)
-            return
+        """The states after this one that are neither limits nor have been met."""
+        moves = self._moves(state, condition)
+        if not moves:
+            self._add(Limit((), Residuals({}).network(state.config, self._world), "stuck"), condition)
         for e in moves:
-            after = replace(e.after, config=untimed(e.after.config))
-            told = self._told((*condition, *e.condition), after)
-            if self._is_new(after, told):
-                yield replace(after, known=constraints_of(told)), told
+            after = replace(e.after, config=self._untimed(e.after.config))
+            yield from self._arrived(after, (*condition, *e.condition))
+
+    def _arrived(self, state: State, condition: Condition) -> Iterator[tuple[State, Condition]]:
+        """The state itself, unless it is a limit or has been met."""
+        state, bounds = self._unfolded(state)
+        told = self._told(condition, state)
+        for found in (limits := list(self._limits(state, bounds))):
+            self._add(found, told)
+        if not limits and self._is_new(state, told):
+            yield replace(state, known=constraints_of(told)), told
 
     def _moves(self, state: State, condition: Condition) -> list[Evolution]:
         """What is urgent, or else everything that may happen next."""
@@ -156,46 +165,54 @@ class _Search:
             after = elapsed(state.config, seconds, self._world)
             yield Evolution((), replace(state, config=after), ("TIME", (seconds,), "ok", ()))
 
-    def _unfolded(self, state: State) -> State:
-        """Recursions with the arguments that they had are gone into."""
-        while (found := next(self._recursions(state.config, changed=False), None)) is not None:
-            spot, call = found
-            term = begin(call, (), self._world)
-            state = replace(state, config=untimed(settle(state.config.put(spot, term), self._world)))
-        return state
+    def _unfolded(self, state: State) -> tuple[State, list[Spot]]:
+        """Recursions with the arguments that they had are gone into; what is left of bounds is where a limit is."""
+        while True:
+            bounds = [s for s in state.config.spots() if isinstance(s.leaf, Leaf) and s.leaf.name in self._bounds]
+            again = next((s for s in bounds if not self._is_limit(s)), None)
+            if again is None:
+                return state, bounds
+            term = begin(self._invoked(again)[0], (), self._world)
+            state = replace(state, config=self._untimed(settle(state.config.put(again, term), self._world)))
 
-    def _recursions(self, config: Config, *, changed: bool) -> Iterator[tuple[Spot, Call]]:
-        for spot in config.spots():
-            if isinstance(spot.leaf, Leaf) and spot.leaf.name.endswith(MARK):
-                call, entry = invoked(spot.leaf.name, spot.leaf.arguments, self._whole.program)
-                if entry is None and isinstance(own := self._components[spot.root - 1], Call) and own.name == call.name:
-                    same = own.arguments == call.arguments
-                else:
-                    same = entry == spot.leaf.arguments[: len(call.arguments)]
-                if same is not changed:
-                    yield spot, call
+    def _is_limit(self, spot: Spot) -> bool:
+        """A sensor, or a recursion with changed arguments."""
+        assert isinstance(spot.leaf, Leaf)
+        if spot.leaf.name in self._sensors:
+            return True
+        call, entry = self._invoked(spot)
+        own = self._components[spot.root - 1]
+        if entry is None and isinstance(own, Call) and own.name == call.name:
+            return own.arguments != call.arguments
+        return entry != spot.leaf.arguments[: len(call.arguments)]
+
+    def _invoked(self, spot: Spot) -> tuple[Call, tuple[Value, ...] | None]:
+        assert isinstance(spot.leaf, Leaf)
+        return invoked(spot.leaf.name, spot.leaf.arguments, self._whole.program)
 
     # ------------------------------------------------------------------------------------------------- limits
 
-    def _limits(self, state: State) -> Iterator[Limit]:
-        for spot, call in self._recursions(state.config, changed=True):
+    def _limits(self, state: State, bounds: list[Spot]) -> Iterator[Limit]:
+        for spot in bounds:
             own = self._components[spot.root - 1]
-            if isinstance(own, Call) and own.name == call.name:
-                yield Limit((), self._network({own: call}), "recursion", own, call)
-            else:
-                yield Limit((), _beside(self._network({}), call), "recursion", own, call)
-        for spot in state.config.spots():
-            if isinstance(spot.leaf, Leaf) and spot.leaf.name in self._sensors:
-                own = self._components[spot.root - 1]
+            assert isinstance(spot.leaf, Leaf)
+            if spot.leaf.name in self._sensors:
                 sensor = Residuals({}).residual(spot.leaf, self._whole)
-                beside = self._network({}) if own == sensor else _beside(self._network({}), sensor)
-                yield Limit((), beside, "bound", own, sensor)
-        for (_, term), own in zip(state.config.roots, self._components, strict=True):
+                whole = own == sensor
+                yield Limit((), self._network() if whole else _beside(self._network(), sensor), "bound", own, sensor)
+                continue
+            call, _ = self._invoked(spot)
+            inside = not (isinstance(own, Call) and own.name == call.name)
+            now = _beside(self._network(), call) if inside else self._network(spot.root - 1, call)
+            yield Limit((), now, "recursion", own, call)
+        for number, ((_, term), own) in enumerate(zip(state.config.roots, self._components, strict=True)):
             if isinstance(term, Ended):
-                yield Limit((), self._network({own: None}), "end", own)
+                yield Limit((), self._network(number, None), "end", own)
 
-    def _network(self, changed: dict[Process, Process | None]) -> Process:
-        return folded(self._tree, changed, self._whole) or STOP
+    def _network(self, number: int = -1, changed: Process | None = None) -> Process:
+        """The network with the component of this number changed, or gone."""
+        now = [changed if n == number else c for n, c in enumerate(self._components)]
+        return folded(self._tree, iter(now), self._whole) or STOP
 
     def _add(self, found: Limit, condition: Condition) -> None:
         asked = constraints_of(condition)
@@ -251,9 +268,15 @@ def _is_pause(leaf: Leaf) -> bool:
     return leaf.name == "Delay" and leaf.site is None and leaf.arguments == (QUANTUM,)
 
 
-def untimed(config: Config) -> Config:
-    """The configuration in which what takes an unknown time may end at any time."""
-    return replace(config, roots=tuple((n, _unhurried(term)) for n, term in config.roots))
+def untimed(config: Config, memory: dict[Run, Run] | None = None) -> Config:
+    """The configuration in which what takes an unknown time may end at any time. `memory` holds terms done before."""
+    known = {} if memory is None else memory
+    roots = []
+    for number, term in config.roots:
+        if (new := known.get(term)) is None:
+            new = known[term] = _unhurried(term)
+        roots.append((number, new))
+    return Config(tuple(roots), config.store)
 
 
 def _unhurried(term: Run) -> Run:

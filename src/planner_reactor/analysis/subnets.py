@@ -130,14 +130,14 @@ def subnet(process: Process, world: World, ports: Collection[str]) -> tuple[Proc
     return tuple(c for i, c in enumerate(components) if i in matters)
 
 
-def folded(tree: Network, changed: dict[Process, Process | None], world: World) -> Process | None:
+def folded(tree: Network, now: Iterator[Process | None], world: World) -> Process | None:
     """The network again after components have changed: as one call where a definition says so, else part by part.
 
-    `changed` maps components to what they are now, None if they are gone.
+    `now` gives what each component is now, in their order; None if it is gone.
     """
     if not tree.parts:
-        return changed.get(tree.call, tree.call)
-    parts = [folded(part, changed, world) for part in tree.parts]
+        return next(now)
+    parts = [folded(part, now, world) for part in tree.parts]
     if all(new == old.call for new, old in zip(parts, tree.parts, strict=True)):
         return tree.call
     left = [part for part in parts if part is not None]
