@@ -277,6 +277,7 @@ SAMPLES = {
     "check": "check examples/11_mistakes.rsl",
     "plan": "plan examples/09_cafe.itl",
     "network": "network examples/12_intervals.txt",
+    "verify": "verify examples/03_ports.rsl Main",
 }
 
 
