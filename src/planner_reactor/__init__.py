@@ -1,8 +1,8 @@
 """planner-reactor: robot programs that start acting at once and keep improving while they run.
 
 Everything that the command does is also a call of the same name here: `run`, `check`, `loop`, `kit`, `plan`,
-`network`, `experiment`, `bench`, `evolve`, `limits`, `verify` (see `planner_reactor.calls`). They are imported only
-when they are asked for.
+`network`, `experiment`, `bench`, `evolve`, `limits`, `lts`, `verify` (see `planner_reactor.calls`). They are
+imported only when they are asked for.
 """
 
 from __future__ import annotations
@@ -18,9 +18,10 @@ if TYPE_CHECKING:
     from planner_reactor.calls.networks import network
     from planner_reactor.calls.planning import plan
     from planner_reactor.calls.running import run
+    from planner_reactor.calls.transitions import lts
     from planner_reactor.calls.verifying import verify
 
-__all__ = ["bench", "check", "evolve", "experiment", "kit", "limits", "loop", "network", "plan", "run", "verify"]
+__all__ = ["bench", "check", "evolve", "experiment", "kit", "limits", "loop", "lts", "network", "plan", "run", "verify"]
 
 _MODULES = {
     "bench": "measuring",
@@ -30,6 +31,7 @@ _MODULES = {
     "kit": "looping",
     "limits": "evolving",
     "loop": "looping",
+    "lts": "transitions",
     "network": "networks",
     "plan": "planning",
     "run": "running",

@@ -87,7 +87,7 @@ def _examined(config: Config, world: World, groups: Sequence[Sequence[Part]], li
             known[key] = built(_network(config, world, group, groups, limit), limit=limit), names
         transitions, theirs = known[key]
         found.append((transitions, dict(zip(theirs, names, strict=True))))
-    together = [n for n, (t, _) in enumerate(found) if any(t.urgent)]
+    together = [n for n, (t, _) in enumerate(found) if any(t.urgent) or _timed(t)]
     if len(together) > 1 and any(_timed(t) for t, _ in found):
         joined = [part for n in together for part in groups[n]]
         return _examined(config, world, [joined, *(g for n, g in enumerate(groups) if n not in together)], limit)

@@ -79,7 +79,7 @@ class Network:
             urgent = True
             yield label, met, True
         if not urgent and (pause := min(map(Cell.pause, cells, vector), default=inf)) < inf:
-            yield time_label(pause), self.later(vector, pause), True
+            yield time_label(pause), self.later(vector, pause), False
 
     def meetings(self, vector: Vector) -> Iterator[tuple[Label, int, int, Vector]]:
         """Every rendezvous of two cells: label, writer, reader, vector afterwards."""
@@ -98,6 +98,11 @@ class Network:
     def over(self, vector: Vector) -> bool:
         """Has every root ended?"""
         return all(map(Cell.over, self.cells, vector))
+
+    def active(self, vector: Vector, situation: str) -> bool:
+        """Has this situation an instance on or in service, descendants included?"""
+        pairs = zip(self.cells, vector, strict=True)
+        return not all(cell.configs[state].store.quiescent(situation) for cell, state in pairs)
 
     def outcome(self, vector: Vector, root: int) -> tuple[bool, Bindings] | None:
         """How a root has ended, with which results; None while it runs."""

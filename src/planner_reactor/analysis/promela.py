@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from planner_reactor.analysis.automata import Automata, Automaton
-from planner_reactor.analysis.exports import readable
+from planner_reactor.analysis.labels import show_label
 from planner_reactor.rs.terms import Value
 
 GOES_ON = "true"
@@ -49,7 +49,7 @@ def _states(cell: Automaton, ports: dict[Value, int], values: dict[Value, int]) 
     names = [f"end_{s}" if over else f"at_{s}" for s, over in enumerate(cell.over)]
     for s in range(len(cell)):
         options = [
-            f"{GOES_ON if after != s else STAYS} -> goto {names[after]} /* {_comment(readable(label))} */"
+            f"{GOES_ON if after != s else STAYS} -> goto {names[after]} /* {_comment(show_label(label))} */"
             for label, after in cell.own[s]
         ]
         options += [f"port_{ports[p]}!{values[v]} -> goto {names[after]}" for p, v, after in cell.writes[s]]

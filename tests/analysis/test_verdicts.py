@@ -1,0 +1,47 @@
+"""Deadlocks, Zeno cycles, livelocks and situations without end, each by a shortest way."""
+
+from __future__ import annotations
+
+from planner_reactor.analysis.transitions import Transitions, build
+from planner_reactor.analysis.verdicts import deadlock, endless, livelock, zeno
+from tests.analysis.nets import begun
+
+
+def built(text: str) -> Transitions:
+    return build(*begun(text))
+
+
+def test_a_deadlock_is_found_by_a_shortest_way() -> None:
+    found = deadlock(built("(a ; a ; IN[p]<x>) # (a ; NIL) # (a ; a ; a)"))
+    assert found is None  # someone always ends
+    stuck = deadlock(built("(a ; b ; IN[p]<x>) | (a ; OUT[q, 1])"))
+    assert stuck is not None
+    assert len(stuck.prefix) == 3
+    assert deadlock(built("OUT[p, 1] | IN[p]<x>")) is None
+
+
+def test_stream_without_a_quantum_is_zeno_and_with_one_it_is_not() -> None:
+    printed = zeno(built("(OUT[p, 1] :; STOP) | (IN[p]<x> :; STOP)"))
+    assert printed is not None
+    assert [name for name, *_ in printed.cycle] == ["COM"]
+    assert zeno(built("((OUT[p, 1] ; Delay[1]) :; STOP) | (IN[p]<x> :; STOP)")) is None
+
+
+def test_a_basic_process_that_may_take_its_time_is_no_zeno_cycle() -> None:
+    assert zeno(built("a :; STOP")) is None
+
+
+def test_a_livelock_is_where_nothing_but_inner_steps_is_left() -> None:
+    found = livelock(built("a ; ((OUT[p, 1] :; STOP) | (IN[p]<x> :; STOP))"))
+    assert found is not None
+    assert [name for name, *_ in found.prefix] == ["a"]
+    assert found.cycle
+    assert livelock(built("(a ; OUT[p, 1] :; STOP) | (IN[p]<x> :; STOP)")) is None
+
+
+def test_a_situation_that_nobody_ends_is_endless_from_the_step_that_asserts_it() -> None:
+    printed = built("(a :; ASSERT[s]) | (SIT[s]<k> :; a)")
+    found = endless(printed, "s")
+    assert found is not None
+    assert [name for name, *_ in found.prefix] == ["a", "ASSERT"]
+    assert endless(built("(a :; ASSERT[s]) | (SIT[s]<k> :; SUCCEED[s, k])"), "s") is None
