@@ -14,7 +14,8 @@ from math import inf, isinf
 import msgspec
 
 from planner_reactor.analysis.protocols import LIMIT, Checked, Counterexample, Protocol, check
-from planner_reactor.analysis.slicing import Slice, Sliced, sliced, unknown_names
+from planner_reactor.analysis.slicing import Slice, Sliced, apart, sliced, unknown_names, upside_down
+from planner_reactor.errors import BudgetError
 from planner_reactor.rs.bounds import Bounds
 from planner_reactor.rs.configurations import Ending, Label, World
 from planner_reactor.rs.reactions import REACTION, Reaction, Surgery, drain_script, wait_script
@@ -23,6 +24,9 @@ from planner_reactor.rs.vocabulary import Signature
 
 SCRIPTS: Mapping[str, Callable[[Surgery], Process]] = {"drain": drain_script, "wait": wait_script}
 """How each mode writes a surgery as a process."""
+
+SMALL = 500
+"""States of a slice that are looked at as a whole: a fraction of a second."""
 
 OPEN = {name: Signature(name, window=(0.0, inf)) for name in ("Works", "Asks")}
 
@@ -61,8 +65,11 @@ class Verdict(msgspec.Struct, frozen=True, kw_only=True):
 class Verifier:
     """Verifies adaptations of one reactor, and remembers the shapes that it has seen."""
 
-    def __init__(self, environment: Environment | None = None, *, mode: str = "drain", limit: int = LIMIT) -> None:
+    def __init__(
+        self, environment: Environment | None = None, *, mode: str = "drain", small: int = SMALL, limit: int = LIMIT
+    ) -> None:
         self.environment = environment
+        self._small = small
         self.seen: dict[Slice, Checked] = {}
         self._script = SCRIPTS[mode]
         self._limit = limit
@@ -76,9 +83,37 @@ class Verifier:
             return Verdict(safe=False, local=False, bounded=False, why=why)
         bound = self.bound(before, surgery)
         part = sliced(before, coming, surgery)
-        known = self.seen.get(part.slice)
-        found = known or self._looked_at(part.slice)
-        return _verdict(found, bound, part, surgery, states=0 if known else found.states)
+        if (known := self.seen.get(part.slice)) is not None:
+            return _verdict(known, bound, part, surgery, states=0)
+        try:
+            found = self.seen[part.slice] = _looked_at(part.slice, self._script, self._small)
+        except BudgetError:
+            return self._one_by_one(before, coming, surgery, bound)
+        return _verdict(found, bound, part, surgery, states=found.states)
+
+    def _one_by_one(
+        self, before: list[Reaction], coming: list[Reaction], surgery: Surgery, bound: float | None
+    ) -> Verdict:
+        """What is too large to be looked at as a whole: each situation by itself, and their order.
+
+        The killed roots, and what is only added, are looked at beside the first.
+        """
+        if (wrong := upside_down(before, surgery)) is not None:
+            return Verdict(local=False, bound_s=bound, why=f"{wrong[1]} would be held up at {wrong[0]}, drained first")
+        states = 0
+        for single in apart(before, coming, surgery):
+            part = sliced(before, coming, single)
+            if (found := self.seen.get(part.slice)) is None:
+                found = self.seen[part.slice] = _looked_at(part.slice, self._script, self._limit)
+                states += found.states
+            verdict = _verdict(found, bound, part, surgery, states=states)
+            if not verdict.holds:
+                return verdict
+        serves = {r.label: r for r in before}
+        loose = [n for n in surgery.kills if serves[n].situation not in surgery.held and not serves[n].monitors]
+        if loose:
+            return Verdict(safe=False, bound_s=bound, why=f"P[{loose[0]}] is killed, and what it serves is not held")
+        return verdict
 
     def bound(self, present: Iterable[Reaction], surgery: Surgery) -> float | None:
         """Seconds in which what is held has been drained; None if nothing is known of the basic processes."""
@@ -92,17 +127,16 @@ class Verifier:
         program = Program(r.schema for r in reactions)
         return Bounds(program, self.environment.signatures, self.environment.limits, served).drains(surgery.held)
 
-    def _looked_at(self, part: Slice) -> Checked:
-        world = World(Program(part.schemas), OPEN, endings=_endings)
-        protocol = Protocol(
-            reactor=part.reactor,
-            script=self._script(part.surgery),
-            named=frozenset(part.surgery.named),
-            kills=frozenset(part.surgery.kills),
-            adds=frozenset(part.surgery.adds),
-        )
-        found = self.seen[part] = check(protocol, world, limit=self._limit)
-        return found
+
+def _looked_at(part: Slice, script: Callable[[Surgery], Process], limit: int) -> Checked:
+    protocol = Protocol(
+        reactor=part.reactor,
+        script=script(part.surgery),
+        named=frozenset(part.surgery.named),
+        kills=frozenset(part.surgery.kills),
+        adds=frozenset(part.surgery.adds),
+    )
+    return check(protocol, World(Program(part.schemas), OPEN, endings=_endings), limit=limit)
 
 
 def _endings(name: str, arguments: tuple[Value, ...]) -> Iterable[Ending]:

@@ -3,8 +3,8 @@
 Kept are the situations that the adaptation names, and those between them in the hierarchy. The rest is replaced by
 something that can do at least as much:
 
-    above       whoever asserts a kept situation from outside: `Asks :; (ASSERT[s] # Asks)`, at any time, given up at
-                any time; two of them where several may ask at once
+    above       whoever asserts a kept situation from outside: `Asks :; ASSERT[s]`, at any time; two of them where
+                several may ask at once
     below       a situation that is not kept, and every basic process: `Works`, which ends at any time, either way
     arguments   and results are dropped; nothing in the protocol depends on them
 
@@ -66,9 +66,7 @@ class Slice(msgspec.Struct, frozen=True):
     def reactor(self) -> Process:
         """Equation (3) with the reactions present, and those who ask."""
         guarded: list[Process] = [_guarded(Number(n)) for n in self.present]
-        asking: list[Process] = [
-            Loop(ASKS, Disable((Call("ASSERT", (Symbol(s),)), ASKS))) for s in self.asked
-        ]
+        asking: list[Process] = [Loop(ASKS, Call("ASSERT", (Symbol(s),))) for s in self.asked]
         adding = Spawn(Call("ADD", (), ("m",)), _guarded(Variable("m")))
         return Par((*guarded, *asking, adding)) if guarded or asking else adding
 
@@ -107,6 +105,30 @@ def sliced(reactions: Sequence[Reaction], new: Sequence[Reaction], surgery: Surg
         _renamed(surgery, names, labels),
     )
     return Sliced(made, {new: old for old, new in names.items()}, {new: old for old, new in labels.items()})
+
+
+def apart(reactions: Sequence[Reaction], new: Sequence[Reaction], surgery: Surgery) -> list[Surgery]:
+    """The surgery as one for each situation: a drain that has ended stays so, whatever follows."""
+    serves = {r.label: r.situation for r in (*reactions, *new)}
+    return [
+        Surgery(
+            held=(situation,),
+            kills=tuple(n for n in surgery.kills if serves.get(n) == situation),
+            adds=tuple(n for n in surgery.adds if serves.get(n) == situation),
+            named=(situation,),
+        )
+        for situation in surgery.held
+    ]
+
+
+def upside_down(reactions: Sequence[Reaction], surgery: Surgery) -> tuple[str, str] | None:
+    """A situation that is held before one above it: (held first, above it)."""
+    below = children(reactions)
+    for n, later in enumerate(surgery.held):
+        reached = _reached([later], below)
+        if found := [earlier for earlier in surgery.held[:n] if earlier in reached]:
+            return found[0], later
+    return None
 
 
 def _is_monitor(reaction: Reaction) -> bool:

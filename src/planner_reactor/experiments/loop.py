@@ -12,6 +12,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from planner_reactor.analysis.adaptations import Environment
 from planner_reactor.experiments.timing import Fixed, PlannerTime
 from planner_reactor.link.channels import AdaptationChannel, PerceptionChannel
 from planner_reactor.link.messages import Adaptation
@@ -79,6 +80,8 @@ class Loop:
         self.trace = Trace(lambda: self.scheduler.now, keep=keep_trace)
         self.host = make_host(self.scheduler, self.trace)
         self.planner = planner
+        limits = {name: process.limit for name, process in self.host.processes.items()}
+        planner.meet(Environment(self.host.signatures, limits))
         self.planner_time = planner_time or Fixed()
         self.perceptions = PerceptionChannel(self._perceived)
         self.adaptations = AdaptationChannel(self._issued)
@@ -146,6 +149,8 @@ class Loop:
             return
         self.costs.planner_cpu.append(cpu)
         self._decided(step)
+        if step.withheld:
+            self.trace.record("adaptation_withheld", purpose=step.purpose, because=step.withheld)
         self._busy = True
         charge = self.planner_time.seconds(step, outstanding, cpu)
         self.scheduler.call_after(charge, lambda: self._thought(step))

@@ -15,6 +15,9 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Mapping
 
+from msgspec.structs import replace
+
+from planner_reactor.analysis.adaptations import Environment
 from planner_reactor.link.messages import Mode, Perception
 from planner_reactor.logic.domain import Domain
 from planner_reactor.logic.formulas import Atom
@@ -29,6 +32,7 @@ from planner_reactor.planner.sensing import observer_of
 from planner_reactor.planner.situations import Situation
 from planner_reactor.planner.steps import Cause, Relax, Relaxation, Step
 from planner_reactor.planner.theory import Theory
+from planner_reactor.planner.verifying import Gate, reason
 
 __all__ = ["Planner", "Relaxation", "Step"]
 
@@ -40,6 +44,7 @@ class Planner:
     ones are not relaxed either. `period_ms` replaces the domain's periods of monitors. With `fold` constant
     arguments become part of a situation's name, else a situation has parameters and several instances at
     once. With `foresight` it thinks ahead when there is nothing else to do, so that a failure finds it prepared.
+    With `verify` no adaptation is issued before it is verified (`verifying`).
     """
 
     def __init__(
@@ -55,6 +60,7 @@ class Planner:
         epoch: int = 0,
         patience: int | None = None,
         foresight: bool = False,
+        verify: bool = True,
     ) -> None:
         self.domain = domain
         self.goal = chosen_goal(domain, goal)
@@ -64,6 +70,8 @@ class Planner:
         self._failures: Counter[str] = Counter()
         self._assuming = Assuming(domain, relax)
         self._issuer = Issuer(self.model, fold, stub_ms, period_ms, mode, epoch)
+        self._gate = Gate(mode=mode) if verify else None
+        self._withheld: dict[int, str] = {}
         self._reducer = Reducer(self.goal, Theory(domain), self.model, self._issuer, self._assuming, self._counts)
         self._foresight = Foresight(self._reducer) if foresight else None
 
@@ -112,6 +120,16 @@ class Planner:
         found = (w for segment in self.model if segment.refinement for w in segment.refinement.warnings)
         return tuple(dict.fromkeys(found))
 
+    @property
+    def withheld(self) -> Mapping[int, str]:
+        """The adaptations that were not issued because they do not hold: by id, the situations and why."""
+        return self._withheld
+
+    def meet(self, environment: Environment) -> None:
+        """What is known of the basic processes from now on: bounds of adaptations are numbers."""
+        if self._gate is not None:
+            self._gate.meet(environment)
+
     def statistics(self) -> Mapping[str, int]:
         """Counts: refinements, adaptations by outcome, relaxations by cause, perceptions by kind."""
         return {**self._counts, "refinements": self._reducer.memory.worked_out}
@@ -123,7 +141,22 @@ class Planner:
 
         None if there is nothing to do until something is perceived.
         """
-        return self._reducer.step() or self._watch() or self._reinstate() or self._relax_next() or self._think_ahead()
+        step = self._reducer.step() or self._watch() or self._reinstate() or self._relax_next() or self._think_ahead()
+        return step if step is None or self._gate is None else self._verified(step, self._gate)
+
+    def _verified(self, step: Step, gate: Gate) -> Step:
+        """The same without what does not hold: that counts as refused."""
+        sent, why = [], ""
+        for adaptation in step.adaptations:
+            verdict = gate.examine(adaptation)
+            if verdict.holds:
+                sent.append(adaptation)
+                continue
+            self._withheld[adaptation.id] = why = reason(adaptation, verdict)
+            self._counts["withheld"] += 1
+            self._counts["issued"] -= 1
+            self._reducer.not_applied(adaptation.id, why=f"withheld, {why}")
+        return replace(step, adaptations=tuple(sent), withheld=why) if why else step
 
     def _think_ahead(self) -> Step | None:
         """Nothing is to be done: work out what would be, were the next assumption to fail."""
@@ -182,6 +215,8 @@ class Planner:
     def perceive(self, perception: Perception) -> None:
         """Take note of one perception; the next steps follow from it."""
         self._counts[perception.kind] += 1
+        if self._gate is not None:
+            self._gate.perceive(perception)
         match perception.kind:
             case "adaptation_applied":
                 self._reducer.applied(int(perception.subject))

@@ -15,7 +15,7 @@ StepKind: TypeAlias = Literal["refine", "relax", "reinstate", "watch", "foresee"
 
 class Step(msgspec.Struct, frozen=True):
     """What one step did: worked on a `situation`, for the sake of an `assumption` (or ''), and what it
-    issued.
+    issued. `withheld` says why something was not issued.
     """
 
     kind: StepKind
@@ -24,6 +24,7 @@ class Step(msgspec.Struct, frozen=True):
     cause: Cause | Literal["reinstated", ""] = ""
     adaptations: tuple[Adaptation, ...] = ()
     purpose: str = ""
+    withheld: str = ""
 
 
 class Relaxation(msgspec.Struct, frozen=True):
