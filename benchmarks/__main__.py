@@ -1,4 +1,4 @@
-"""The executer beside its peers: `python benchmarks [--peers] [--json]`.
+"""The executer and the planner beside their peers: `python benchmarks [--peers] [--only PART] [--json]`.
 
 One run, medians of five taken in turns, ratios to the peers that are installed (`pip install -e '.[bench]'`). A goal to
 be exceeded is marked `≥`, one not to be exceeded `≤`; they were set for an idle machine, the ratios hold on a busy one.
@@ -17,9 +17,10 @@ from types import ModuleType
 from typing import Any
 
 import bench_executer as ours
+import planner_rows
 from measuring import Work, rates
 
-PEERS = ("simpy", "asyncio", "trio")
+PEERS = ("simpy", "asyncio", "trio", "gtpyhop", "unified")
 COUNTS = (10, 1_000, 100_000)
 Row = dict[str, Any]
 
@@ -28,17 +29,19 @@ def main() -> int:
     """Run everything and print it."""
     parser = argparse.ArgumentParser(prog="benchmarks", description=__doc__)
     parser.add_argument("--peers", action="store_true", help="also measure SimPy, asyncio and trio")
+    parser.add_argument("--only", choices=("executer", "planner"), help="measure one part")
     parser.add_argument("--json", action="store_true", help="print one JSON object")
     given = parser.parse_args()
     peers = installed() if given.peers else {}
-    rows = [row for part in (throughput, reactions, costs) for row in part(peers)]
+    parts = {"executer": (throughput, reactions, costs), "planner": (planner_rows.planning,)}
+    rows = [row for name, part in parts.items() if given.only in (None, name) for do in part for row in do(peers)]
     found = {
         "python": platform.python_version(),
         "load": round(os.getloadavg()[0], 2),
-        "peers": {name: module.VERSION for name, module in peers.items()},
+        "peers": {name: getattr(module, "VERSION", "") for name, module in peers.items()},
         "measures": rows,
     }
-    print(json.dumps(found) if given.json else readable(rows, peers))
+    print(json.dumps(found) if given.json else readable(rows))
     return 0
 
 
@@ -150,16 +153,18 @@ def limited(name: str, unit: str, value: float, goal: float | None, peers: dict[
     }
 
 
-def readable(rows: list[Row], peers: dict[str, ModuleType]) -> str:
+def readable(rows: list[Row]) -> str:
     """A table; behind each peer's figure how many times better ours is."""
-    lines = [f"{'':46} {'ours':>12} {'goal':>12}  " + "  ".join(f"{peer:>20}" for peer in peers)]
+    lines = []
+    columns: tuple[str, ...] = ()
     for row in rows:
+        missing = [peer for peer in row["peers"] if peer not in columns]
+        if missing or not lines:  # another part of the table, with other peers
+            columns = tuple(row["peers"])
+            lines.append(f"{'':46} {'ours':>12} {'goal':>12}  " + "  ".join(f"{peer:>20}" for peer in columns))
         sign = "≥" if row["unit"] == "1/s" else "≤"
         goal = "" if row["goal"] is None else f"{sign} {row['goal']:,}"
-        others = []
-        for peer in peers:
-            value = row["peers"].get(peer)
-            others.append("" if value is None else f"{value:,} (×{row['ratio'][peer]})")
+        others = [f"{row['peers'][p]:,} (×{row['ratio'][p]})" if p in row["peers"] else "" for p in columns]
         head = f"{row['name']:46} {row['ours']:>12,} {goal:>12}  "
         lines.append(head + "  ".join(f"{text:>20}" for text in others) + f"  {row['unit']}")
     return "\n".join(lines)

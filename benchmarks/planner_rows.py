@@ -1,0 +1,112 @@
+"""The planner's part of the table: each figure, its goal, and what a peer takes for the same work."""
+
+from __future__ import annotations
+
+import sys
+from types import ModuleType
+from typing import Any
+
+import bench_planner as ours
+import kit_task
+
+Row = dict[str, Any]
+Peers = dict[str, ModuleType]
+
+
+def planning(peers: Peers) -> list[Row]:
+    """All of them."""
+    return [*beginnings(peers), *relaxations(peers), *promptness(), *executions(peers)]
+
+
+def beginnings(peers: Peers) -> list[Row]:
+    progress("first adaptation, first ideal reactor")
+    whole = {n: of_peers(peers, n) for n in (3, 100)}
+    rows = [
+        row(f"first adaptation, {n} kinds", "ms", ours.first_adaptation(n), goal, whole[n])
+        for n, goal in ((3, 5.0), (100, 10.0))
+    ]
+    ideal = {n: ours.first_ideal(n) for n in (3, 25, 100)}
+    rows += [row(f"first ideal reactor, {n} kinds", "ms", ideal[n], 100.0, whole[n]) for n in (3, 100)]
+    cold = ours.from_process_start(n := 100)
+    rows.append(row(f"process start to first adaptation, {n} kinds", "ms", cold * 1e3, 100.0, {}))
+    growth = ours.exponent(ideal[25], ideal[100])
+    rows.append(row("growth of first ideal, 25 to 100 kinds", "exponent", growth, 1.1, {}))
+    return rows
+
+
+def of_peers(peers: Peers, kinds: int) -> dict[str, float]:
+    """What the peers take to plan the whole kit."""
+    found = {}
+    if "gtpyhop" in peers:
+        found["gtpyhop"] = peers["gtpyhop"].plan_ms(kinds)
+    if "unified" in peers:
+        for engine in peers["unified"].engines():
+            progress(f"{engine}, {kinds} kinds")
+            found[engine], _ = peers["unified"].plan_ms(engine, kinds)
+    return found
+
+
+def relaxations(peers: Peers) -> list[Row]:
+    tested = {"gtpyhop": peers["gtpyhop"].plan_ms(100, relaxed=True)} if "gtpyhop" in peers else {}
+    rows = []
+    for name in ours.NINE:
+        progress(f"relaxing {name}")
+        many = ours.relaxing(100, name)
+        rows.append(row(f"relaxing {name}, 100 kinds", "ms", many, 12.0 if name == "AQ" else 50.0, tested))
+        alone, read = ours.anew(100, name, reading=False), ours.anew(100, name, reading=True)
+        rows.append(row("  in parts of planning anew", "", many / alone, 0.3, {}))
+        rows.append(row("  in parts of reading and planning anew", "", many / read, 0.3, {}))
+        foreseen = ours.relaxing(100, name, foresight=True)
+        rows.append(row("  foreseen", "ms", foreseen, None, {}))
+        rows.append(row("  foreseen, in parts of planning anew", "", foreseen / alone, 0.3, {}))
+        if name in ("AQ", "ACT", "ADT"):
+            growth = ours.exponent(ours.relaxing(25, name), many)
+            rows.append(row("  growth, 25 to 100 kinds", "exponent", growth, 1.1, {}))
+    rows.append(row("all nine, 3 kinds", "ms", ours.all_nine(3), 50.0, {}))
+    return rows
+
+
+def promptness() -> list[Row]:
+    progress("failures while at work, and every step")
+    rows = []
+    for kinds in (3, 100):
+        answers, steps = ours.reactions_to_failures(kinds), ours.steps_ms(kinds)
+        rows += [
+            row(f"failure to first adaptation, p99, {kinds} kinds", "ms", quantile(answers, 0.99), 20.0, {}),
+            row(f"longest step, p99.9, {kinds} kinds", "ms", quantile(steps, 0.999), 5.0, {}),
+            row(f"longest step, {kinds} kinds", "ms", steps[-1], None, {}),
+        ]
+    return rows
+
+
+def executions(peers: Peers) -> list[Row]:
+    progress("the kit task, executed")
+    rows = []
+    for kinds in (3, 25, 100):
+        theirs = {}
+        if "unified" in peers and "kairos" in peers["unified"].engines() and kinds <= 25:
+            theirs["kairos"] = peers["unified"].plan_ms("kairos", kinds, rounds=1)[1]
+        took, goal = kit_task.executed(kinds), 1.05 * kit_task.best(kinds)
+        rows.append(row(f"makespan of the kit task, {kinds} kinds", "s", took, goal, theirs))
+    return rows
+
+
+def quantile(ordered: list[float], share: float) -> float:
+    return ordered[min(len(ordered) - 1, int(len(ordered) * share))]
+
+
+def row(name: str, unit: str, value: float, goal: float | None, peers: dict[str, Any]) -> Row:
+    """A row in which less is better."""
+    return {
+        "name": name,
+        "unit": unit,
+        "ours": round(value, 3),
+        "goal": None if goal is None else round(goal, 2),
+        "of_goal": None if goal is None else round(goal / max(value, 1e-9), 2),
+        "peers": {peer: round(theirs, 2) for peer, theirs in peers.items()},
+        "ratio": {peer: round(theirs / max(value, 1e-9), 2) for peer, theirs in peers.items()},
+    }
+
+
+def progress(name: str) -> None:
+    print(f"… {name}", file=sys.stderr, flush=True)
