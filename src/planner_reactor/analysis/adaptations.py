@@ -8,22 +8,27 @@ looked at once; what adds to nothing needs no look at all.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from math import inf, isinf
 
 import msgspec
 
-from planner_reactor.analysis.protocols import LIMIT, Checked, Counterexample, Protocol, check
+from planner_reactor.analysis.protocols import LIMIT, Checked, Counterexample, Law, Protocol, check
 from planner_reactor.analysis.slicing import Slice, Sliced, apart, sliced, unknown_names, upside_down
-from planner_reactor.errors import BudgetError
+from planner_reactor.errors import BudgetError, InputError
 from planner_reactor.rs.bounds import Bounds
 from planner_reactor.rs.configurations import Ending, Label, World
-from planner_reactor.rs.reactions import REACTION, Reaction, Surgery, drain_script, wait_script
-from planner_reactor.rs.terms import Process, Program, Value, operands
+from planner_reactor.rs.reactions import (
+    REACTION,
+    Reaction,
+    Surgery,
+    drain_script,
+    removal_script,
+    versions_script,
+    wait_script,
+)
+from planner_reactor.rs.terms import Process, Program, Value, cond, operands
 from planner_reactor.rs.vocabulary import Signature
-
-SCRIPTS: Mapping[str, Callable[[Surgery], Process]] = {"drain": drain_script, "wait": wait_script}
-"""How each mode writes a surgery as a process."""
 
 SMALL = 500
 """States of a slice that are looked at as a whole: a fraction of a second."""
@@ -71,7 +76,7 @@ class Verifier:
         self.environment = environment
         self._small = small
         self.seen: dict[Slice, Checked] = {}
-        self._script = SCRIPTS[mode]
+        self._mode = mode
         self._limit = limit
 
     def verify(self, present: Iterable[Reaction], new: Iterable[Reaction], surgery: Surgery) -> Verdict:
@@ -86,7 +91,7 @@ class Verifier:
         if (known := self.seen.get(part.slice)) is not None:
             return _verdict(known, bound, part, surgery, states=0)
         try:
-            found = self.seen[part.slice] = _looked_at(part.slice, self._script, self._small)
+            found = self.seen[part.slice] = _looked_at(part.slice, self._mode, self._small)
         except BudgetError:
             return self._one_by_one(before, coming, surgery, bound)
         return _verdict(found, bound, part, surgery, states=found.states)
@@ -102,9 +107,9 @@ class Verifier:
             return Verdict(local=False, bound_s=bound, why=f"{wrong[1]} would be held up at {wrong[0]}, drained first")
         states = 0
         for single in apart(before, coming, surgery):
-            part = sliced(before, coming, single)
+            part = sliced(before, [r for r in coming if r.label in single.adds], single)
             if (found := self.seen.get(part.slice)) is None:
-                found = self.seen[part.slice] = _looked_at(part.slice, self._script, self._limit)
+                found = self.seen[part.slice] = _looked_at(part.slice, self._mode, self._limit)
                 states += found.states
             verdict = _verdict(found, bound, part, surgery, states=states)
             if not verdict.holds:
@@ -116,8 +121,11 @@ class Verifier:
         return verdict
 
     def bound(self, present: Iterable[Reaction], surgery: Surgery) -> float | None:
-        """Seconds in which what is held has been drained; None if nothing is known of the basic processes."""
-        if self.environment is None:
+        """Seconds in which what is held has been drained; None if nothing is known of the basic processes.
+
+        Beside each other versions come at once. How long WAITINHIBIT takes is not bounded by windows.
+        """
+        if self.environment is None or self._mode == "wait":
             return None
         reactions = list(present)
 
@@ -125,13 +133,35 @@ class Verifier:
             return tuple(operands(r.schema.body)[1] for r in reactions if r.situation == situation)
 
         program = Program(r.schema for r in reactions)
+        if self._mode == "versions":
+            return 0.0
         return Bounds(program, self.environment.signatures, self.environment.limits, served).drains(surgery.held)
 
 
-def _looked_at(part: Slice, script: Callable[[Surgery], Process], limit: int) -> Checked:
+def _looked_at(part: Slice, mode: str, limit: int) -> Checked:
+    """The script of this mode beside the slice. Versions: its own script, then also what removes the retired later,
+    which may take as long as old instances live.
+    """
+    match mode:
+        case "drain":
+            return _checked(part, drain_script(part.surgery), limit)
+        case "wait":
+            return _checked(part, wait_script(part.surgery), limit)
+        case "versions":
+            script, removal = versions_script(part.surgery, part.killed), removal_script(part.surgery, part.killed)
+            found, after = _checked(part, script, limit), _checked(part, cond(script, removal), limit)
+            later: dict[Law, Counterexample] = {
+                law: broken for law, broken in after.broken.items() if law not in ("bounded", "atomic")
+            }
+            return Checked({**later, **found.broken}, found.states + after.states)
+        case _:
+            raise InputError(f"mode is {mode}, expected drain, wait or versions")
+
+
+def _checked(part: Slice, script: Process, limit: int) -> Checked:
     protocol = Protocol(
         reactor=part.reactor,
-        script=script(part.surgery),
+        script=script,
         named=frozenset(part.surgery.named),
         kills=frozenset(part.surgery.kills),
         adds=frozenset(part.surgery.adds),

@@ -24,7 +24,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 import msgspec
 from msgspec.structs import replace
 
-from planner_reactor.rs.reactions import REACTION, Reaction, Surgery, children
+from planner_reactor.rs.reactions import REACTION, Reaction, Surgery, children, reaction_of
 from planner_reactor.rs.terms import (
     STOP,
     All,
@@ -61,6 +61,12 @@ class Slice(msgspec.Struct, frozen=True):
     present: tuple[int, ...]
     asked: tuple[str, ...]  # from outside, once for each asker
     surgery: Surgery
+
+    @property
+    def killed(self) -> tuple[Reaction, ...]:
+        """The reactions that go."""
+        found = {r.label: r for r in map(reaction_of, self.schemas) if r is not None}
+        return tuple(found[n] for n in self.surgery.kills if n in found)
 
     @property
     def reactor(self) -> Process:
@@ -116,6 +122,7 @@ def apart(reactions: Sequence[Reaction], new: Sequence[Reaction], surgery: Surge
             kills=tuple(n for n in surgery.kills if serves.get(n) == situation),
             adds=tuple(n for n in surgery.adds if serves.get(n) == situation),
             named=(situation,),
+            removed=(situation,) if situation in surgery.removed else (),
         )
         for situation in surgery.held
     ]
@@ -175,6 +182,7 @@ def _renamed(surgery: Surgery, names: Mapping[str, str], labels: Mapping[int, in
         kills=tuple(labels.get(n, -1) for n in surgery.kills),
         adds=tuple(labels.get(n, -1) for n in surgery.adds),
         named=tuple(sorted(names[s] for s in surgery.named)),
+        removed=tuple(names[s] for s in surgery.removed),
     )
 
 

@@ -8,6 +8,8 @@ adaptation goes out at once; texts are read when a later one needs them.
 
 from __future__ import annotations
 
+from msgspec.structs import replace
+
 from planner_reactor.analysis.adaptations import Environment, Verdict, Verifier
 from planner_reactor.analysis.labels import show_label
 from planner_reactor.errors import RSError
@@ -25,6 +27,7 @@ class Gate:
 
     def __init__(self, environment: Environment | None = None, *, mode: str = "drain") -> None:
         self.verifier = Verifier(environment, mode=mode)
+        self._patient = mode == "wait"  # what may never be granted is given up at its deadline, and says so
         self.withheld: dict[int, Verdict] = {}  # what was not sent, by the adaptation's id
         self._known: set[str] = set()  # situations that an adaptation has named
         self._unread: list[Adaptation] = []
@@ -50,6 +53,8 @@ class Gate:
         except RSError as problem:
             return self._withhold(adaptation, Verdict(safe=False, why=str(problem)))
         verdict = self.verifier.verify(self._reactions.values(), new, surgery(adaptation))
+        if self._patient:
+            verdict = replace(verdict, bounded=True)
         if not verdict.holds:
             return self._withhold(adaptation, verdict)
         self._known |= named
