@@ -67,22 +67,23 @@ class Sit:
 
     def __init__(self, situations: Situations) -> None:
         self._situations = situations
+        self._serving = situations.serving
         self._waiting: dict[Strand, tuple[str, Reaction]] = {}
         self.interrupted = 0
 
     def start(self, strand: Strand, arguments: tuple[Value, ...]) -> Outcome | None:
         situation, reaction = str(arguments[0]), (strand.guard, strand.site)
-        instance = self._situations.deliver(situation, reaction, opens=strand.pc.opens)  # type: ignore[attr-defined]
+        instance = self._serving.deliver(self._situations.named(situation), reaction, opens=strand.pc.opens)  # type: ignore[attr-defined]
         if instance is None:
             self._waiting[strand] = (situation, reaction)
-            self._situations.waits(situation, reaction, strand)
+            self._serving.waits(self._situations.named(situation), reaction, strand)
             return None
         self._waiting.pop(strand, None)
         return Outcome(True, (instance.number, *instance.arguments), context=(instance, reaction))
 
     def cancel(self, strand: Strand) -> None:
         situation, reaction = self._waiting.pop(strand)
-        self._situations.left_waiting(situation, reaction, strand)
+        self._serving.left_waiting(self._situations.named(situation), reaction, strand)
 
     def opened(self, strand: Strand, body: Body) -> None:
         instance, reaction = served(body)

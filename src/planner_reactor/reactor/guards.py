@@ -106,7 +106,7 @@ class Guards:
         guarded = self._by_strand.pop(strand, None)
         if guarded is not None:
             del self._by_label[guarded.label]
-            self._situations.forget_guard(guarded.label)
+            self._situations.serving.forget_guard(guarded.label)
             self._notice("removed", label=guarded.label)
             self._retry(guarded)
 
@@ -134,7 +134,7 @@ class Guards:
         if arguments[0] not in self._by_label:
             self._notice("absent_guard", label=arguments[0])
             return ERROR
-        self._situations.retire(arguments[0])
+        self._situations.serving.retire(arguments[0])
         self._notice("retired", label=arguments[0])
         return STOPPED
 

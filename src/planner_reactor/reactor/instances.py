@@ -69,9 +69,6 @@ class Served:
     stamps: dict[int, int] = field(default_factory=dict)
     waiting: deque[Strand] = field(default_factory=deque)
 
-    def serves(self, instance: Instance) -> bool:
-        return self.first <= instance.version <= self.last
-
     def take(self, stamp: int) -> Instance | None:
         """The instance to serve now, stamped; it is not offered again before `give_back`."""
         while self.fresh or self.again:

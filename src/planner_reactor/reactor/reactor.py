@@ -268,11 +268,12 @@ class Reactor:
         self.transactions.changed(label, added=False)
 
     def _reaction_removed(self, label: int) -> None:
-        self.reactions.pop(label, None)
+        retired = self.reactions.pop(label, None) is None
         self.counts["changes_applied"] += 1
-        if self.transactions.changed(label, added=False):
+        changed = not retired and self.transactions.changed(label, added=False)
+        if changed or retired:
             self.perceive("guard_kill", str(label))
-        else:
+        if not changed:
             self._forget([label])
 
     def _absent_guard(self, label: Value) -> None:

@@ -9,7 +9,6 @@ Legend: s situation, k instance number, g reaction = (label of its guard or None
 
 from __future__ import annotations
 
-from collections import deque
 from collections.abc import Callable, Hashable, Iterator
 from typing import TypeAlias
 
@@ -19,10 +18,10 @@ from planner_reactor.reactor.instances import (
     Kind,
     QueuedAssert,
     Reaction,
-    Served,
     Situation,
     Strand,
 )
+from planner_reactor.reactor.serving import Serving
 from planner_reactor.reactor.versions import Versions
 from planner_reactor.reactor.wakers import Waker
 
@@ -47,8 +46,8 @@ class Situations:
         self._held_by: dict[Hashable, list[Situation]] = {}  # what an owner inhibits, in the order in which it did
         self._count = 0
         self._tickets = 0
-        self._services = 0
         self.versions = Versions()
+        self.serving = Serving(self._by_name, self.versions, waker, notice)
         self.spawned: set[str] = set()  # served by `::`: may be asserted from below themselves
 
     def named(self, name: str) -> Situation:
@@ -112,10 +111,7 @@ class Situations:
             owner.children[instance.number] = instance
         self._notice("asserted", situation=situation.name, instance=instance.number, arguments=arguments,
                      owner=owner.number if owner else None)  # fmt: skip
-        for served in situation.reactions.values():
-            if served.serves(instance):
-                served.fresh.append(instance)
-        self._offer(situation)
+        self.serving.came(instance)
 
     def _queue(
         self, situation: Situation, arguments: tuple[object, ...], owner: Instance | None, strand: Strand, again: bool
@@ -146,58 +142,7 @@ class Situations:
         if entry.owner is not None:
             del entry.owner.queued[entry.ticket]
 
-    # -- SIT and the bodies it opens
-
-    def deliver(self, name: str, reaction: Reaction, *, opens: bool) -> Instance | None:
-        """The least recently served instance that this reaction may serve now (rule SIT).
-
-        If the delivery `opens` a body, the instance is in service until `leave`.
-        """
-        situation = self.named(name)
-        if (served := situation.reactions.get(reaction)) is None:
-            served = situation.reactions[reaction] = self._serving(situation, reaction[0])
-        if situation.blocked:
-            return None
-        self._services += 1
-        instance = served.take(self._services)
-        if instance is not None:
-            self._notice("delivered", situation=name, instance=instance.number, guard=reaction[0])
-            if not opens:
-                served.give_back(instance)
-        return instance
-
-    def _serving(self, situation: Situation, label: Hashable) -> Served:
-        first, last = self.versions.served(label, situation.name)
-        return Served(deque(i for i in situation.instances.values() if first <= i.version <= last), first, last)
-
-    def waits(self, name: str, reaction: Reaction, strand: Strand) -> None:
-        self.named(name).reactions[reaction].waiting.append(strand)
-
-    def left_waiting(self, name: str, reaction: Reaction, strand: Strand) -> None:
-        """N9: a SIT is aborted while it waits; a wake-up that it will not use goes to the next."""
-        situation = self.named(name)
-        if (served := situation.reactions.get(reaction)) is None:
-            return
-        if strand in served.waiting:
-            served.waiting.remove(strand)
-        else:
-            self._offer_to(situation, served)
-
-    def forget_guard(self, label: object) -> None:
-        """The reaction with this guard is gone: nobody waits at its SIT any more."""
-        self.versions.forget(label)
-        for situation in self._by_name.values():
-            for reaction in [g for g in situation.reactions if g[0] == label]:
-                del situation.reactions[reaction]
-
-    def _offer(self, situation: Situation) -> None:
-        """Something may have become available: the first waiting strand of each reaction tries again."""
-        for served in situation.reactions.values():
-            self._offer_to(situation, served)
-
-    def _offer_to(self, situation: Situation, served: Served) -> None:
-        if served.waiting and (served.fresh or served.again) and not situation.blocked:
-            self._waker.wake(served.waiting.popleft())
+    # -- bodies in service
 
     def enter(self, instance: Instance, reaction: Reaction) -> None:
         """{B}: a body of this instance is in service."""
@@ -211,9 +156,7 @@ class Situations:
         self._notice("left", situation=situation.name, instance=instance.number, guard=reaction[0], cut=cut)
         if not instance.bodies and instance.status == "on" and (instance.withdrawn or situation.disabled):
             self._end([(instance, False, "withdrawn" if instance.withdrawn else "assumption")])
-        if (served := situation.reactions.get(reaction)) is not None:
-            served.give_back(instance)
-            self._offer_to(situation, served)
+        self.serving.came_back(instance, reaction)
         self._complete(instance)
 
     # -- how instances end
@@ -320,14 +263,6 @@ class Situations:
         for _, strand in granted:
             self._waker.ended(strand, True, (), "")
 
-    def retire(self, label: Hashable) -> None:
-        """RETIRE[n]: the reaction serves nothing that is asserted after the next RENEW."""
-        self.versions.retire(label)
-        for situation in self._by_name.values():
-            for reaction, served in situation.reactions.items():
-                if reaction[0] == label:
-                    served.last = self.versions.served(label, situation.name)[1]
-
     def _withdraw(self, situation: Situation) -> None:
         withdrawn = [i for i in situation.instances.values() if i.status == "on"]
         for instance in withdrawn:  # grows while it is read: descendants follow their owners
@@ -416,4 +351,4 @@ class Situations:
                 self._unlink(entry)
                 del self._queued[entry.strand]
                 self._begin(situation, entry.arguments, entry.owner, entry.strand, entry.again)
-        self._offer(situation)
+        self.serving.offer(situation)

@@ -1,0 +1,146 @@
+"""After a crash a reactor stands on its last committed structure: wholly the old one or wholly the new one (law 8)."""
+
+from __future__ import annotations
+
+import pytest
+
+from planner_reactor.errors import InputError
+from planner_reactor.reactor.journal import Journal
+from planner_reactor.runtime import Host
+from tests.reactor.disks import TornDisk
+from tests.reactor.driving import FIRST, SECOND, Bench
+
+
+def survivor(disk: TornDisk) -> Bench:
+    """The reactor that is started on what this disk holds."""
+    return Bench(journal=Journal(TornDisk(disk.durable)))
+
+
+def test_what_was_applied_is_there_again_and_acts() -> None:
+    disk = TornDisk()
+    bench = Bench(journal=Journal(disk))
+    bench.at(0.0, FIRST)
+    bench.at(3.0, SECOND)
+    bench.run(10.0)
+    again = survivor(disk)
+    again.run(10.0)
+    assert again.reactor.text() == bench.reactor.text()
+    assert again.reactor.versions == bench.reactor.versions
+    assert again.times("entered", situation="part")
+    assert again.reactor.laws.violations == []
+    assert again.perceptions()[0].kind == "restarted"
+
+
+@pytest.mark.parametrize("moment", [0.0, 2.9, 3.0, 3.5, 3.9999, 4.0, 5.0])
+def test_a_crash_at_any_moment_leaves_the_old_structure_or_the_new(moment: float) -> None:
+    disk = TornDisk()
+    bench = Bench(journal=Journal(disk))
+    bench.at(0.0, FIRST)
+    bench.at(3.0, SECOND)
+    bench.run(moment)
+    again = survivor(disk)
+    again.run(10.0)
+    assert sorted(again.reactor.reactions) == ([0, 1, 4] if moment >= 4.0 else [0, 1, 2, 3])
+    assert list(again.reactor.situations.held) == []
+    assert again.reactor.laws.violations == []
+
+
+def test_a_crash_at_every_byte_that_was_written_leaves_a_committed_structure() -> None:
+    disk = TornDisk()
+    bench = Bench(journal=Journal(disk))
+    bench.at(0.0, FIRST)
+    bench.at(3.0, SECOND)
+    bench.run(10.0)
+    seen = set()
+    for cut in range(26, len(disk.durable) + 1):
+        journal = Journal(TornDisk(disk.durable[:cut]))
+        journal.recover()
+        seen.add(tuple(sorted(journal.state.committed.clauses)))
+    assert seen == {(), (0, 1, 2, 3), (0, 1, 4)}
+
+
+def test_what_was_under_way_came_to_nothing_and_the_planner_is_told() -> None:
+    disk = TornDisk()
+    bench = Bench(journal=Journal(disk))
+    bench.at(0.0, FIRST)
+    bench.at(3.0, SECOND)
+    bench.run(3.5)
+    disk.sync()  # so that the beginning of the second is there as well
+    again = survivor(disk)
+    told = [(p.kind, p.subject, p.cause) for p in again.perceptions()]
+    assert told == [("adaptation_refused", "2", "restarted"), ("restarted", "sound", "")]
+    assert again.reactor.journal.state.open == ()
+
+
+def test_an_id_that_was_taken_before_the_crash_is_not_taken_again() -> None:
+    disk = TornDisk()
+    bench = Bench(journal=Journal(disk))
+    bench.at(0.0, FIRST)
+    bench.run(1.0)
+    again = survivor(disk)
+    again.at(1.0, FIRST)
+    again.run(2.0)
+    assert [p.cause for p in again.perceptions() if p.kind == "adaptation_refused"] == ["repeated"]
+
+
+def test_an_assumption_that_had_failed_fails_until_it_is_sensed_to_hold() -> None:
+    disk = TornDisk()
+    bench = Bench(journal=Journal(disk))
+    bench.at(0.0, FIRST)
+    bench.scheduler.call_at(2.5, lambda: bench.flags.update(A=False))
+    bench.run(4.0)
+    again = survivor(disk)
+    assert list(again.reactor.failed) == ["A"]
+    again.run(3.0)
+    assert again.times("entered", situation="part") == []
+    again.reactor.assumption_sensed("A", True)
+    again.run(6.0)
+    assert again.times("entered", situation="part")
+    assert again.reactor.laws.violations == []
+
+
+def test_a_full_disk_stops_adaptations_and_nothing_else() -> None:
+    disk = TornDisk()
+    bench = Bench(journal=Journal(disk))
+    bench.at(0.0, FIRST)
+    bench.run(3.0)
+    disk.room = 0
+    bench.reactor.receive(SECOND)
+    refused = next(p for p in bench.perceptions() if p.kind == "adaptation_refused")
+    assert refused.cause == "disk"
+    bench.run(9.0)
+    assert len(bench.times("entered", situation="part")) > 3
+    assert bench.reactor.journal.gaps == 1
+    assert bench.reactor.laws.violations == []
+
+
+def test_a_disk_that_fills_during_the_drain_takes_the_adaptation_back() -> None:
+    disk = TornDisk()
+    bench = Bench(journal=Journal(disk))
+    bench.at(0.0, FIRST)
+    bench.at(3.0, SECOND)
+    bench.scheduler.call_at(3.5, lambda: setattr(disk, "room", 0))
+    before = None
+    bench.run(3.0)
+    before = bench.reactor.text()
+    bench.run(9.0)
+    assert bench.reactor.text() == before
+    assert [p.cause for p in bench.perceptions() if p.kind == "adaptation_refused"] == ["disk"]
+    assert list(bench.reactor.situations.held) == []
+    assert bench.times("entered", situation="part")[-1] > 6.0
+    assert bench.reactor.laws.violations == []
+
+
+def test_a_journal_of_another_host_is_not_run() -> None:
+    disk = TornDisk()
+    bench = Bench(journal=Journal(disk))
+    bench.at(0.0, FIRST)
+    bench.run(1.0)
+    with pytest.raises(InputError, match=r"another host.*Do"):
+        Bench(journal=Journal(TornDisk(disk.durable)), host=Host("other"))
+
+
+def test_each_start_is_another_incarnation() -> None:
+    disk = TornDisk()
+    for count in (1, 2, 3):
+        assert Bench(journal=Journal(disk)).reactor.journal.state.incarnation == count
