@@ -9,9 +9,9 @@ from typing import Annotated, Any
 import typer
 
 from planner_reactor.cli import options
+from planner_reactor.cli.adaptations import verify_adaptation
 from planner_reactor.cli.application import command
 from planner_reactor.cli.printing import print_json, reserved_output
-from planner_reactor.errors import InputError
 
 VERDICTS = {True: "holds", False: "does not hold", None: "not decided within the limit"}
 
@@ -19,6 +19,7 @@ VERDICTS = {True: "holds", False: "does not hold", None: "not decided within the
 @command(
     "cell.rsl Main",
     "cell.rsl Main --property 'always (asserted Kit -> eventually succeeded Kit) under weak fairness' --json",
+    "reactor.rsl Reactor --adapt 'KILL[2] : POST[4]' --mode drain",
 )
 def verify(
     file: Annotated[Path, typer.Argument(metavar="FILE.rsl", help="The program.", show_default=False)],
@@ -41,8 +42,8 @@ def verify(
     as_json: options.Json = False,
 ) -> int:
     """Check every run of a process: exit status 1 if something does not hold or is not decided."""
-    if adapt is not None:  # the seam for verified adaptation
-        raise InputError("--adapt is not in this version")
+    if adapt is not None:
+        return verify_adaptation(file, process, adapt, mode=mode, host=host, limit=limit, as_json=as_json)
     from planner_reactor.calls import verifying
 
     with reserved_output():
