@@ -7,8 +7,8 @@ else. Components communicate: what a camera reads is what the object says.
 
 Conditions leave out how long things take and what meets within the network. A delay of unknown length may end at any
 time; delays of known length take exactly that, so other delays may give other limits. Zero-time tests are urgent, and
-the pause of a STREAM is short against every unknown delay. A limit under a condition that asks for more than another
-for the same term is left out.
+the pause of a STREAM is short against every unknown delay. Of bodies of one `::` in the same state two are kept. A
+limit under a condition that asks for more than another for the same term is left out.
 """
 
 from __future__ import annotations
@@ -21,25 +21,43 @@ from typing import Literal, TypeAlias
 import msgspec
 from msgspec.structs import replace
 
-from planner_reactor.analysis.conditions import Condition, constraints_of, events_of, mentioned, shortened, weaker
+from planner_reactor.analysis.conditions import (
+    Condition,
+    Event,
+    constraints_of,
+    events_of,
+    mentioned,
+    shortened,
+    weaker,
+)
 from planner_reactor.analysis.evolution import DURATIONS, Evolution, State, immediate, outside
 from planner_reactor.analysis.explore import boundaries, canonical
 from planner_reactor.analysis.recursions import MARK, bounded, invoked
 from planner_reactor.analysis.renaming import renamed, unknowns_of
 from planner_reactor.analysis.residuals import Residuals
 from planner_reactor.analysis.subnets import Network, folded, network, open_ports
+from planner_reactor.rs.comparisons import TESTS
 from planner_reactor.rs.configurations import Config, World
 from planner_reactor.rs.constraints import consistent, projected
 from planner_reactor.rs.evolves import begin, settle, started
 from planner_reactor.rs.leaves import elapsed, slack
 from planner_reactor.rs.prelude import QUANTUM
-from planner_reactor.rs.states import Ended, Leaf, Run, Spot, parts_of, with_parts
+from planner_reactor.rs.states import Ended, Leaf, Run, Spawning, Spot, parts_of, with_parts
 from planner_reactor.rs.terms import STOP, Call, Par, Process, Value
 from planner_reactor.rs.unknowns import Constraint, Symbolic, Unknown, courses
 
 Kind: TypeAlias = Literal["recursion", "bound", "end", "stuck"]
 
 KINDS: tuple[Kind, ...] = ("recursion", "bound", "end", "stuck")
+
+UNTOLD = (*DURATIONS, *TESTS, "Ran")
+"""Processes whose end no condition of a limit tells: what they ask of unknowns is told instead."""
+
+MOST_EQUAL = 2
+"""Bodies of one `::` that are in the same state: more are like these, since each takes the time that it likes."""
+
+FORGOTTEN = 10**6
+"""The serial of unknowns that nothing but an event mentions."""
 
 LIMIT = 20_000
 """States that are reached unless a caller says otherwise."""
@@ -218,7 +236,7 @@ class _Search:
         asked = constraints_of(condition)
         keep = {*_given(asked), *unknowns_of((found.term, found.reached)), *mentioned(events_of(condition))}
         asked = shortened(projected(asked, keep))
-        new = renamed(replace(found, condition=(*events_of(condition), *asked)))
+        (_, _, new) = renamed((found.term, found.reached, replace(found, condition=(*events_of(condition), *asked))))
         same = [old for old in self._found if old.term == new.term and old.kind == new.kind]
         if not any(weaker(old.condition, new.condition) for old in same):
             dropped = [old for old in same if weaker(new.condition, old.condition)]
@@ -232,14 +250,14 @@ class _Search:
 
     def _told(self, condition: Condition, after: State) -> Condition:
         """The condition as far as anybody may ask for it: no delays, no meetings, nothing of what is forgotten."""
-        events = tuple(
-            e for e in events_of(condition) if e.kind != "meeting" and e.name not in (*DURATIONS, "Ran")
-        )
+        events = tuple(e for e in events_of(condition) if e.kind != "meeting" and e.name not in UNTOLD)
         constraints = constraints_of(condition)
-        if not constraints or after.serial == 1:
+        if after.serial == 1:
             return tuple(dict.fromkeys((*events, *constraints)))
-        keep = {*_given(constraints), *unknowns_of(after.config), *mentioned(events)}
-        return (*dict.fromkeys(events), *projected(constraints, keep))
+        live = {*unknowns_of(after.config), *unknowns_of([e.arguments for e in events])}
+        events = tuple(_without_results(e, live) for e in events)
+        constraints = projected(constraints, {*_given(constraints), *live}) if constraints else ()
+        return tuple(dict.fromkeys((*events, *constraints)))
 
     def _is_new(self, state: State, condition: Condition, *, look: bool = False) -> bool:
         """Has this configuration not been met under a condition that asks for no more? Then it has now."""
@@ -252,6 +270,14 @@ class _Search:
         if not look:
             self._seen[key] = [*(known for known in before if not weaker(told, known)), told]
         return True
+
+
+def _without_results(event: Event, live: Collection[Unknown]) -> Event:
+    """The event, with results that nobody can ask for any more told by their names only."""
+    if all(u in live for u in event.results):
+        return event
+    forgotten = (u if u in live or not isinstance(u, Unknown) else Unknown(u.name, FORGOTTEN) for u in event.results)
+    return replace(event, results=tuple(forgotten))
 
 
 def _given(constraints: tuple[Constraint, ...]) -> Iterator[Unknown]:
@@ -284,6 +310,9 @@ def _unhurried(term: Run) -> Run:
         if term.name in DURATIONS and term.arguments and isinstance(term.arguments[0], Symbolic):
             return replace(term, name="Term", arguments=(inf,), age=0.0)
         return term
+    if isinstance(term, Spawning) and len(term.bodies) > MOST_EQUAL:
+        kept = [b for n, b in enumerate(term.bodies) if term.bodies[:n].count(b) < MOST_EQUAL]
+        term = term if len(kept) == len(term.bodies) else replace(term, bodies=tuple(kept))
     parts = parts_of(term)
     new = tuple(map(_unhurried, parts))
     return term if all(a is b for a, b in zip(new, parts, strict=True)) else with_parts(term, new)

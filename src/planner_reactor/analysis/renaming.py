@@ -45,7 +45,7 @@ def unknowns_of(thing: Any) -> Iterator[Unknown]:
             yield from unknowns(thing)
         case str() | int() | float() | None:
             return
-        case tuple():
+        case tuple() | list():
             for part in thing:
                 yield from unknowns_of(part)
         case Ended():
@@ -75,7 +75,7 @@ def unknowns_of(thing: Any) -> Iterator[Unknown]:
                     yield from unknowns_of(getattr(thing, name))
 
 
-UNTOUCHED = frozenset({"rest", "loop", "branches", "site", "place", "results", "operator", "renamed", "reaction"})
+UNTOUCHED = frozenset({"rest", "loop", "branches", "site", "place", "operator", "renamed", "reaction"})
 """Fields that hold text of the program: no unknown is in them but those that were there from the start."""
 
 
