@@ -14,6 +14,7 @@ import msgspec
 from msgspec.structs import replace
 
 from planner_reactor.calls.checking import must_fit
+from planner_reactor.calls.conforming import attend
 from planner_reactor.calls.hosts import HostMaker, HostSource, find_host
 from planner_reactor.calls.inputs import names_in, one_of, read_text, seconds, whole
 from planner_reactor.calls.outputs import Outputs
@@ -44,7 +45,8 @@ class LoopOptions(TypedDict, total=False):
     `faults`: a file of faults; `until`: seconds; `cell`: "events"; `clock`: "virtual" or "wall"; `planner`:
     "inline"; `planner_time`: seconds charged for each step of the planner, "measured" or "papers"; `mode`: "drain",
     "wait" or "versions"; `relax`: "all", "none", or assumptions; `trace`: a file `*.jsonl` to write; `figures`: a directory to draw into;
-    `watch`: is given the `Loop` before it runs; `told`: is given each warning, a line.
+    `conform`: hold every step against the semantics (`conforming`); `watch`: is given the `Loop` before it runs;
+    `told`: is given each warning, a line.
     """
 
     trays: int | None
@@ -60,6 +62,7 @@ class LoopOptions(TypedDict, total=False):
     relax: str | tuple[str, ...]
     trace: str | Path | None
     figures: str | Path | None
+    conform: bool
     watch: Callable[[Loop], object]
     told: Callable[[str], object]
 
@@ -80,6 +83,7 @@ class _Options(msgspec.Struct, frozen=True, kw_only=True):
     relax: str | tuple[str, ...] = "all"
     trace: str | Path | None = None
     figures: str | Path | None = None
+    conform: bool = False
     watch: Callable[[Loop], object] = lambda loop: None
     told: Callable[[str], object] = lambda line: None
 
@@ -115,7 +119,7 @@ def loop(
     Returns what the world reports (for kitting `kits`, `parts`, `faults`, …), `adaptations`, `changes_applied`,
     `assumptions`, `first_adaptation_issued_s`, `first_reactor_s`, `first_ideal_s`, `stub_triggers`, `relaxations`,
     `interruptions`, `laws_checked`, `violations`, `unstruck` (faults that have not struck), `finished`, `figures`
-    (the files drawn), `simulated_s`, `wall_s`, `cpu_s` and `trace_hash`. Raises InputError or SourceError for what
+    (the files drawn), `simulated_s`, `wall_s`, `cpu_s`, `trace_hash` and, if asked, `conformance`. Raises InputError or SourceError for what
     cannot be used.
     """
     given = _Options(**options)
@@ -128,13 +132,15 @@ def _run(text: str, file: str, host: HostSource, goal: str | None, given: _Optio
         outputs.attach(made.trace)
         if given.clock == "wall":
             made.trace.record("not_deterministic", because="the clock is the wall clock")
+        monitor = attend(made.reactor) if given.conform else None
         given.watch(made)
         made.run(until=given.until)
         # a host of our own is simulation alone; what another one would do twice we cannot know
         if host == KITTING_HOST and given.clock == "virtual" and made.planner_time.deterministic:
             again, _ = _prepared(text, file, host, goal, replace(given, told=lambda line: None))
             check_replay(made, again, until=given.until)
-    return {**_came_to(made, faults, given), "figures": outputs.drawn}
+    held = {"conformance": monitor.report()} if monitor is not None else {}
+    return {**_came_to(made, faults, given), "figures": outputs.drawn, **held}
 
 
 def _prepared(

@@ -11,6 +11,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+from planner_reactor.calls.conforming import Monitor
 from planner_reactor.calls.hosts import HostSource, find_host
 from planner_reactor.calls.inputs import one_of, read_text, seconds, whole
 from planner_reactor.calls.processes import called, checked, value
@@ -30,6 +31,7 @@ def run(
     seed: int = 0,
     until: float | None = None,
     clock: str = "virtual",
+    conform: bool = False,
     told: Callable[[str], object] = lambda line: None,
 ) -> dict[str, Any]:
     """Run `process`, a call such as `Main` or `Main[3, cap]`, beside the definitions of a file `*.rsl`.
@@ -37,7 +39,8 @@ def run(
     `host` brings basic processes, functions, a world; `until` is in seconds; `clock` is "virtual" or "wall". Returns
     `outcome` (stop, abort, running: at `until`, or because all waits), `cause` of an abort, `results`, `time_s`,
     `events` (steps), `rendezvous`, `processes_live`, `zeno` (the definition that used up a budget, or None) and
-    `waiting` (ports at which something waits). Raises SourceError for a wrong text, InputError for a wrong argument.
+    `waiting` (ports at which something waits) and, with `conform`, `conformance` (`conforming`). Raises SourceError
+    for a wrong text, InputError for a wrong argument.
     """
     seed, until = whole("seed", seed, 0), seconds("until", until)
     one_of("clock", clock, ("virtual", "wall"))
@@ -57,9 +60,10 @@ def run(
     arguments = [value(argument, process, call, used) for argument in call.arguments]
     if isinstance(time, _LonelyClock):
         time.stop = scheduler.stop
+    monitor = Monitor(executer, program, used, trace) if conform else None
     root = start(call, arguments)
     executer.run(until)
-    return _came_to(root, executer)
+    return _came_to(root, executer) | ({"conformance": monitor.report()} if monitor is not None else {})
 
 
 class _LonelyClock(WallClock):

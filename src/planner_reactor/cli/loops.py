@@ -10,7 +10,7 @@ import typer
 
 from planner_reactor.cli import options
 from planner_reactor.cli.application import command
-from planner_reactor.cli.printing import Advance, Notes, print_json, reserved_output, say, table
+from planner_reactor.cli.printing import Advance, Notes, print_json, reserved_output, say, show_conformance, table
 
 if TYPE_CHECKING:
     from planner_reactor.experiments.loop import Loop
@@ -40,6 +40,7 @@ def kit(
     relax: options.Relax = "all",
     trace: options.TraceFile = None,
     figures: options.Figures = None,
+    conform: options.Conform = False,
     as_json: options.Json = False,
 ) -> int:
     """Build kits in a simulated workcell, while the planner keeps rewriting the reactor."""
@@ -71,6 +72,7 @@ def loop(
     relax: options.Relax = "all",
     trace: options.TraceFile = None,
     figures: options.Figures = None,
+    conform: options.Conform = False,
     as_json: options.Json = False,
 ) -> int:
     """Run planner and reactor for any domain in the world of a host."""
@@ -80,7 +82,7 @@ def loop(
 
 
 def _run(ctx: typer.Context, call: Callable[..., dict[str, Any]]) -> int:
-    """Call with the options of the command line; 1 if a law was broken, or the world could not be finished."""
+    """Call with the options of the command line; 1 if a law or the semantics was broken, or the world not finished."""
     from planner_reactor.calls.looping import LoopOptions
 
     given = {name: ctx.params[name] for name in LoopOptions.__annotations__ if name in ctx.params}
@@ -95,7 +97,8 @@ def _run(ctx: typer.Context, call: Callable[..., dict[str, Any]]) -> int:
         print_json(result)
     else:
         _show(result)
-    return int(bool(result["violations"]) or unfinished)
+    disagreement = result.get("conformance", {}).get("disagreement")
+    return int(bool(result["violations"]) or disagreement is not None or unfinished)
 
 
 def _follow(made: Loop, advance: Advance, until: float | None) -> None:
@@ -116,8 +119,9 @@ def _follow(made: Loop, advance: Advance, until: float | None) -> None:
     made.trace.sinks.append(look)
 
 
-def _show(result: Mapping[str, Any]) -> None:
+def _show(result: dict[str, Any]) -> None:
     """The run as tables."""
+    conformance = result.pop("conformance", None)
     table("The run", (), [(name.replace("_", " "), value) for name, value in _figures(result)])
     relaxations = [tuple(r.values()) for r in result["relaxations"]]
     table("Relaxations", ("assumption", "cause", "decided s", "issued s", "applied s"), relaxations)
@@ -126,6 +130,8 @@ def _show(result: Mapping[str, Any]) -> None:
     for drawn in result["figures"]:
         print(drawn)
     table("Violations", ("law",), [(violation,) for violation in result["violations"]])
+    if conformance is not None:
+        show_conformance(conformance)
 
 
 def _figures(result: Mapping[str, Any]) -> list[tuple[str, object]]:

@@ -60,3 +60,6 @@ TraceFile: TypeAlias = Annotated[
 Figures: TypeAlias = Annotated[
     Path | None, typer.Option("--figures", metavar="DIR", help="Draw the figures of the papers into this directory.")
 ]
+Conform: TypeAlias = Annotated[
+    bool, typer.Option("--conform", help="Hold every step of the run against the semantics, as it is taken.")
+]

@@ -138,3 +138,15 @@ class Advance:
     def count(self, done: int, of: int) -> None:
         """So many of so many are done."""
         self.at(done, of, f"{done} of {of}")
+
+
+def show_conformance(report: Mapping[str, Any]) -> None:
+    """What the online monitor says of a run."""
+    if report["disagreement"] is not None:
+        print(f"not allowed by the semantics, {report['disagreement']}; before it:")
+        for label in report["last"]:
+            print(f"  {label}")
+    else:
+        print(f"{report['steps']} steps held against the semantics, all allowed")
+    if report["blind"] is not None:
+        print(f"followed until {report['until_s']:.3f} s only: {report['blind']}")

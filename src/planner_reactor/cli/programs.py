@@ -10,7 +10,7 @@ import typer
 
 from planner_reactor.cli import options
 from planner_reactor.cli.application import command
-from planner_reactor.cli.printing import Notes, print_json, reserved_output, say
+from planner_reactor.cli.printing import Notes, print_json, reserved_output, say, show_conformance
 from planner_reactor.errors import Diagnostic
 
 
@@ -24,19 +24,23 @@ def run(
     seed: options.Seed = 0,
     until: options.Until = None,
     clock: options.ClockName = "virtual",
+    conform: options.Conform = False,
     as_json: options.Json = False,
-) -> None:
+) -> int:
     """Run one process of a program until it ends."""
     from planner_reactor.calls import running
 
     notes = Notes()
     with reserved_output():
-        result = running.run(file, process, host=host, seed=seed, until=until, clock=clock, told=notes)
+        result = running.run(
+            file, process, host=host, seed=seed, until=until, clock=clock, conform=conform, told=notes
+        )
     notes.close()
     if as_json:
         print_json(result)
     else:
         _show_run(process, result)
+    return int(result.get("conformance", {}).get("disagreement") is not None)
 
 
 def _show_run(process: str, result: dict[str, Any]) -> None:
@@ -49,6 +53,8 @@ def _show_run(process: str, result: dict[str, Any]) -> None:
     print(f"{events} event{'s'[: events != 1]}, {result['rendezvous']} rendezvous, {live} {processes} live")
     for port, side in result["waiting"].items():
         print(f"  {side} waits at port {port}")
+    if "conformance" in result:
+        show_conformance(result["conformance"])
     if result["zeno"]:
         say(f"{result['zeno']} went round and round at one instant, and was held up")
 

@@ -69,12 +69,21 @@ UNFOLDING_LIMIT = 100
 """Calls that may unfold without a leaf between them; guardedness is checked when a program is loaded."""
 
 
-def started(process: Process, world: World, *, config: Config | None = None) -> Config:
-    """A configuration in which a new root runs this process beside those of `config`."""
+def started(
+    process: Process, world: World, *, config: Config | None = None, scope: Bindings = (), number: int = 0
+) -> Config:
+    """A configuration in which a new root runs this process beside those of `config`; its `number` is the next free."""
     config = config or Config()
-    number = max((n for n, _ in config.roots), default=0) + 1
-    term = begin(process, (), world)
+    number = number or max((n for n, _ in config.roots), default=0) + 1
+    term = begin(process, scope, world)
     return settle(replace(config, roots=(*config.roots, (number, term))), world)
+
+
+def killed(config: Config, root: int, world: World) -> Config:
+    """N9 for a whole root, which somebody outside aborts."""
+    store = abort(config.root(root), config.store, root)
+    over = Ended(False, cause="cancelled")
+    return settle(Config(tuple((n, over if n == root else t) for n, t in config.roots), store), world)
 
 
 # ---------------------------------------------------------------------------------------------- coming to life

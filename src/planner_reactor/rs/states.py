@@ -334,7 +334,7 @@ def spots(
         term, path, guard, owner = waiting.pop()
         below = 0
         while (field := _LIVE.get(term.__class__)) is not None:
-            owner = term.instance if term.__class__ is Serve else owner  # type: ignore[union-attr]
+            owner = term.instance if term.__class__ is Serve else owner
             term = getattr(term, field)
             below += 1
         if below:

@@ -21,10 +21,11 @@ from planner_reactor.runtime.compiler import Compiler
 from planner_reactor.runtime.host import Host
 from planner_reactor.runtime.kernel import Kernel
 from planner_reactor.runtime.leaves import Use
-from planner_reactor.runtime.outcomes import Control, Observer, Outcome
+from planner_reactor.runtime.outcomes import Control, Label, Observer, Outcome
 from planner_reactor.runtime.rest import is_resting
 from planner_reactor.runtime.scheduler import Scheduler
 from planner_reactor.runtime.strands import WAITING, WOKEN, Root, Strand
+from planner_reactor.runtime.witnesses import Witness
 from planner_reactor.trace import Trace
 
 
@@ -49,6 +50,8 @@ class Executer:
     it.
     """
 
+    kernel_type: type[Kernel] = Kernel
+
     def __init__(
         self,
         program: Program,
@@ -63,13 +66,15 @@ class Executer:
     ) -> None:
         self.scheduler = scheduler
         self.roots: list[Root] = []
-        self._kernel = Kernel(scheduler, budgets or Budgets(), observer)
+        self._kernel = self.kernel_type(scheduler, budgets or Budgets(), observer)
         self._basics = [Basic(process, self._kernel) for process in (host.processes.values() if host else ())]
         by_name: dict[str, Control] = {control.name: control for control in controls}
         by_name |= {basic.name: basic for basic in self._basics}
         self._controls: Mapping[str, Control] = by_name
         self._compiler = Compiler(self._kernel, by_name, host.functions if host else {})
         self._told = on_end
+        self._witness: Witness | None = None
+        self._killed: set[Root] = set()
         self._count = 0
         self._running = False
         self._kernel.on_end = self._ended
@@ -79,6 +84,17 @@ class Executer:
         self.load(program.schemas)
 
     # -- running
+
+    def attend(self, witness: Witness) -> None:
+        """From now on `witness` is told of everything that this executer does, the observer before it."""
+        self._witness, observer = witness, self._kernel.observer
+
+        def observe(label: Label) -> None:
+            if observer is not None:
+                observer(label)
+            witness.took(label, self.sites)
+
+        self._kernel.observer = observe
 
     def start(self, name: str, arguments: Iterable[Value] = ()) -> Root:
         """Start an instance of a schema (or of a basic process) beside what runs; its results are collected."""
@@ -104,6 +120,7 @@ class Executer:
 
     def kill(self, root: Root) -> None:
         """Abort a root, as soon as the present step is over."""
+        self._killed.add(root)
         self._kernel.kill_root(root)
 
     def load(self, schemas: Iterable[Schema]) -> None:
@@ -113,10 +130,15 @@ class Executer:
             if schema.name in BUILT_IN or schema.name in self._controls:
                 raise InputError(f"{schema.name} is a process already, a definition needs another name")
         self._compiler.definitions.load(new)
+        if self._witness is not None:
+            self._witness.loaded(new)
 
     def unload(self, schemas: Iterable[Schema]) -> None:
         """Forget definitions. Strands that run them go on; further calls abort (cause error)."""
-        self._compiler.definitions.unload(schemas)
+        gone = tuple(schemas)
+        self._compiler.definitions.unload(gone)
+        if self._witness is not None:
+            self._witness.unloaded(gone)
 
     def statistics(self) -> Statistics:
         kernel = self._kernel
@@ -193,6 +215,8 @@ class Executer:
         self._kernel.live += 1
         self._kernel.queue(strand, entry)
         self._kernel.arm()
+        if self._witness is not None:
+            self._witness.began(root, process, bound)
         return root
 
     def _result_names(self, name: str, values: tuple[Value, ...]) -> tuple[str, ...]:
@@ -212,6 +236,9 @@ class Executer:
 
     def _ended(self, root: Root) -> None:
         self.roots.remove(root)
+        if self._witness is not None:
+            self._witness.ended(root, killed=root in self._killed and root.cause == "cancelled")
+        self._killed.discard(root)
         if self._told is not None:
             self._told(root)
         if self._running and not self.roots:
