@@ -4,7 +4,10 @@ from __future__ import annotations
 
 from planner_reactor.analysis.transitions import Transitions, build
 from planner_reactor.analysis.verdicts import deadlock, endless, livelock, zeno
-from tests.analysis.nets import begun
+from planner_reactor.calls.replaying import replay
+from planner_reactor.errors import BudgetError
+from planner_reactor.rs.parser import parse_process
+from tests.analysis.nets import Nets, begun
 
 
 def built(text: str) -> Transitions:
@@ -45,3 +48,30 @@ def test_a_situation_that_nobody_ends_is_endless_from_the_step_that_asserts_it()
     assert found is not None
     assert [name for name, *_ in found.prefix] == ["a", "ASSERT"]
     assert endless(built("(a :; ASSERT[s]) | (SIT[s]<k> :; SUCCEED[s, k])"), "s") is None
+
+
+def test_counterexamples_run_in_the_executer() -> None:
+    """Of random nets: every deadlock, and every Zeno cycle three times round."""
+    found: dict[str, int] = {"deadlock": 0, "zeno": 0}
+    for seed in range(45):
+        text = Nets(seed, delays=seed % 2 == 1).text()
+        config, world = begun(text)
+        try:
+            whole = build(config, world, limit=600)
+        except BudgetError:
+            continue
+        for name, way in (("deadlock", deadlock(whole)), ("zeno", zeno(whole))):
+            if way is not None:
+                found[name] += 1
+                labels = (*way.prefix, *way.cycle * 3)
+                assert replay([parse_process(text)], world, labels).done, (seed, text, labels)
+    assert found["deadlock"] > 20
+    assert found["zeno"] > 0
+
+
+def test_what_the_semantics_does_not_allow_does_not_run() -> None:
+    text = "(OUT[p, 1] ; a) | (IN[p]<x> ; b)"
+    config, world = begun(text)
+    labels = [label for label, _ in build(config, world).moves[0]]
+    assert replay([parse_process(text)], world, labels).done
+    assert not replay([parse_process(text)], world, [("a", (), "ok", ()), *labels]).done
