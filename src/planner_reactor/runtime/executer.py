@@ -50,8 +50,6 @@ class Executer:
     it.
     """
 
-    kernel_type: type[Kernel] = Kernel
-
     def __init__(
         self,
         program: Program,
@@ -66,7 +64,7 @@ class Executer:
     ) -> None:
         self.scheduler = scheduler
         self.roots: list[Root] = []
-        self._kernel = self.kernel_type(scheduler, budgets or Budgets(), observer)
+        self._kernel = Kernel(scheduler, budgets or Budgets(), observer)
         self._basics = [Basic(process, self._kernel) for process in (host.processes.values() if host else ())]
         by_name: dict[str, Control] = {control.name: control for control in controls}
         by_name |= {basic.name: basic for basic in self._basics}
