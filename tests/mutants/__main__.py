@@ -21,8 +21,6 @@ def main() -> None:
     arguments.add_argument("--fresh", action="store_true", help="forget earlier results")
     arguments.add_argument("--module", default="", help="only the mutants of this module")
     given = arguments.parse_args()
-    os.environ.setdefault("CONFORMANCE_PROGRAMS", "300")
-    os.environ.setdefault("LAW_TERMS", "40")
     os.environ.setdefault("PYTHONHASHSEED", "0")
     OUT.parent.mkdir(exist_ok=True)
     known = {} if given.fresh else _known()

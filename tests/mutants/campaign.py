@@ -21,8 +21,9 @@ EQUIVALENT = ROOT / "tests/mutants/equivalent.toml"
 
 TESTS = (
     "tests.rs.test_evolves",
+    "tests.rs.test_rules",
     "tests.analysis.test_explore",
-    "tests.test_conformance",
+    "tests.mutants.samples",
 )
 """The modules of tests that a mutant meets, the quick ones first."""
 
@@ -56,14 +57,19 @@ def mutants() -> Iterator[Mutant]:
     """Every mutant of every module, in the order of the code."""
     for module in MODULES:
         source, tree = _parsed(module)
-        rules, digest = Rules(module, source), hashlib.sha256(ast.unparse(tree).encode()).hexdigest()[:12]
+        rules, digests = Rules(module, source), [_digest(node) for node in tree.body]
         counted: Counter[str] = Counter()
         for mutation in mutations(tree):
             text = f"{module}.{mutation.function}: {mutation.operator}: {_told(mutation)}"
             counted[text] += 1
             key = text if counted[text] == 1 else f"{text} #{counted[text]}"
             rule = rules.of(mutation.function, mutation.line, mutation.operator)
-            yield Mutant(module, rule, key, mutation, digest)
+            yield Mutant(module, rule, key, mutation, digests[mutation.path[0][1] or 0])
+
+
+def _digest(node: ast.stmt) -> str:
+    """What a function or class says: while it says the same, what became of its mutants is believed."""
+    return hashlib.sha256(ast.unparse(node).encode()).hexdigest()[:12]
 
 
 def _told(mutation: Mutation) -> str:

@@ -77,23 +77,29 @@ class Code(importlib.abc.MetaPathFinder, importlib.abc.Loader):
         exec(self.code(module.__name__), module.__dict__)
 
     def warm(self, tests: Sequence[str]) -> None:
-        """Compile, once for all children, what these test modules import."""
+        """Compile, once for all children, what these test modules import; import what is not ours."""
+        reading, writing = os.pipe()
         child = os.fork()
         if child == 0:
+            os.close(reading)
             sys.meta_path.insert(0, self)
             forget()
             with contextlib.suppress(BaseException):
                 for name in tests:
                     importlib.import_module(name)
-            names = [n for n in sys.modules if self.file(n) is not None]
-            (ROOT / "out").mkdir(exist_ok=True)
-            (ROOT / f"out/modules.{os.getpid()}").write_text("\n".join(names))
+            with os.fdopen(writing, "w") as said:
+                said.write("\n".join(sys.modules))
             os._exit(0)
+        os.close(writing)
+        with os.fdopen(reading) as said:
+            names = said.read().split()
         os.waitpid(child, 0)
-        found = ROOT / f"out/modules.{child}"
-        for name in found.read_text().split():
-            self.code(name)
-        found.unlink()
+        for name in names:
+            if self.file(name) is not None:
+                self.code(name)
+            elif name not in sys.modules and not name.startswith(("__", "_virtualenv")):
+                with contextlib.suppress(Exception):
+                    importlib.import_module(name)
 
 
 def forget() -> None:
