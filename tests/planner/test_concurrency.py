@@ -69,3 +69,40 @@ def test_a_part_of_one_kind_is_looked_for_while_another_is_placed() -> None:
     planner = Planner(task(3), relax="none")
     settle(planner)
     assert "Find[k1]<x1> : Pick[x1] : Insert[x1, t0] : SUCCEED" in texts(planner)["FillK1T0"]
+
+
+SHARED = """
+atp_resource arm;
+atp_resource bench capacity 2;
+atp_goal All Done(a) and Done(b) and Done(c) and Seen(a);
+atp_fact Thing(a);
+atp_actionschema Work <x><>
+    uses: USES;
+    effects: Done(x);
+endactionschema
+atp_actionschema Look <x><>
+    effects: Seen(x);
+endactionschema
+"""
+
+
+@pytest.mark.parametrize(
+    ("uses", "expected"),
+    [
+        ("arm", "(Work[a] : Work[b] : Work[c] & Look[a])"),
+        ("bench", "(Work[a] : Work[c] & Work[b] & Look[a])"),
+        ("bench 2", "(Work[a] : Work[b] : Work[c] & Look[a])"),
+    ],
+)
+def test_what_needs_the_same_resource_takes_turns_and_the_rest_does_not(uses: str, expected: str) -> None:
+    domain = read_domain(SHARED.replace("USES", uses))
+    planner = Planner(domain, relax="none")
+    settle(planner, Book(domain))
+    assert f"(~({expected} : SUCCEED" in texts(planner)["All"]
+
+
+def test_without_a_resource_nothing_takes_turns() -> None:
+    domain = read_domain(SHARED.replace("    uses: USES;\n", ""))
+    planner = Planner(domain, relax="none")
+    settle(planner, Book(domain))
+    assert "(~((Work[a] & Work[b] & Work[c] & Look[a]) : SUCCEED" in texts(planner)["All"]

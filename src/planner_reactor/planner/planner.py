@@ -22,6 +22,7 @@ from planner_reactor.link.messages import Mode, Perception
 from planner_reactor.logic.domain import Domain
 from planner_reactor.logic.formulas import Atom
 from planner_reactor.planner.agenda import ACTIVE_STUB, FAILED_ASSUMPTION, FAILED_SITUATION, QUIESCENT
+from planner_reactor.planner.convergence import lacking, unlikelihood
 from planner_reactor.planner.foresight import Foresight
 from planner_reactor.planner.goals import chosen_goal
 from planner_reactor.planner.issuing import Issuer
@@ -103,6 +104,21 @@ class Planner:
     def ideal(self) -> bool:
         """Has everything been issued that the ω-ideal reactor needs?"""
         return not self.expectation and not self.impossible
+
+    @property
+    def lacking(self) -> tuple[int, ...]:
+        """What the expectation amounts to (e of (11)): open situations by how much may stand below them."""
+        return lacking(self.domain, self._reducer.segments)
+
+    @property
+    def unlikelihood(self) -> float:
+        """l(ω) of the assumptions held (9)."""
+        return unlikelihood(self.domain, self.relaxed)
+
+    @property
+    def breaches(self) -> tuple[str, ...]:
+        """Where the planner did not get nearer to its end, against (9) or (11): nowhere, if it is right."""
+        return tuple(self._reducer.convergence.breaches)
 
     @property
     def impossible(self) -> Mapping[str, str]:
@@ -205,7 +221,9 @@ class Planner:
     def _relax(self, name: str, cause: Cause, urgency: int) -> None:
         """Plan without an assumption from now on."""
         self._counts[cause] += 1
+        before = self.unlikelihood
         self._assuming.give_up(name, cause)
+        self._reducer.convergence.relaxed(name, before, self.unlikelihood)
         self._reducer.abandon()
         self._reducer.mark_outdated(urgency)
         self._assuming.note(None, done=self._reducer.is_done)

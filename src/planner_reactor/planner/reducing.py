@@ -18,6 +18,7 @@ from planner_reactor.link.messages import Adaptation
 from planner_reactor.logic.domain import ActionSchema
 from planner_reactor.logic.formulas import Atom
 from planner_reactor.planner.agenda import FAILED_ASSUMPTION, QUIESCENT, Agenda
+from planner_reactor.planner.convergence import Convergence
 from planner_reactor.planner.drafts import Draft
 from planner_reactor.planner.goals import root_schema
 from planner_reactor.planner.issuing import MOST_REFUSALS, Issuer, UnderWay
@@ -44,6 +45,7 @@ class Reducer:
     issuer: Issuer
     assuming: Assuming
     counts: Counter[str]
+    convergence: Convergence = field(default_factory=Convergence)
     memory: Memory = field(init=False)
     start: Segment = field(init=False)
     _root: ActionSchema = field(init=False)
@@ -167,7 +169,9 @@ class Reducer:
         for stub in self.issuer.introduced:
             self._agenda.push(stub)
         forced = self.assuming.causes.get(draft.assumption) == "forced"
-        self.mark(self.model.renew_contexts(below), FAILED_ASSUMPTION if forced else QUIESCENT)
+        changed = self.model.renew_contexts(below)
+        self.mark(changed, FAILED_ASSUMPTION if forced else QUIESCENT)
+        self.convergence.reduced(segment, (*self.issuer.introduced, *changed))
         self.assuming.note(adaptation.id if adaptation else None, done=self.is_done)
         if adaptation is None:
             return self._step("refine", draft)

@@ -19,6 +19,7 @@ from planner_reactor.planner.plan import BEFORE, END, Plan, Result, Unnamed
 from planner_reactor.planner.problem import Consulted, Goal, Problem
 from planner_reactor.planner.reach import NEVER, Reach
 from planner_reactor.planner.repetition import Part, part_of, pattern, repeat
+from planner_reactor.planner.sharing import share_out
 from planner_reactor.planner.supports import Supports, Way
 from planner_reactor.planner.theory import DEEPEST
 from planner_reactor.planner.thinking import Work
@@ -58,7 +59,8 @@ class Search:
         """The plan, or None if there is none (or none was found within `NODES` choices)."""
         goals = [Goal(atom, NAMED["equal"], END, n) for n, atom in enumerate(self.problem.goals)]
         found = yield from self._deepen(goals)
-        return self.plan if found and self._threats.resolve() else None
+        found = found and self._threats.resolve() and share_out(self.problem.theory.domain, self.plan)
+        return self.plan if found else None
 
     # ------------------------------------------------------------------------------- control of the search
 
