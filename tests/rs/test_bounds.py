@@ -17,6 +17,7 @@ LEAVES = {name: Signature(name, window=(0.0, high)) for name, high in TIMES.item
 REACTIONS = """
 Part = SIT[part]<k> :; (~(Three : SUCCEED[part, k]) : FAIL[part, k])
 Whole = SIT[whole]<k> :; (~(One : REASSERT[part] : REASSERT[part] : Ten : SUCCEED[whole, k]) : FAIL[whole, k])
+Cut = SIT[cut]<k> :; (REASSERT[part] # Delay[1])
 Crowd = SIT[crowd]<k> :: (Three : SUCCEED[crowd, k])
 Deep = SIT[deep]<k> :: (ASSERT[deep] : SUCCEED[deep, k])
 Twice[t] = Delay[t] : Delay[2 * t]
@@ -58,6 +59,11 @@ def test_one_assert_that_waits_takes_time_and_the_next_fails_at_once() -> None:
     assert bounds().situation("part") == 3
     assert bounds().situation("whole") == 13
     assert bounds().drains(("whole", "part")) == 16
+
+
+def test_what_a_body_has_left_behind_counts_too() -> None:
+    """`#` aborts the ASSERT after a second; the instance that it made is served to its end, and its owner waits."""
+    assert bounds().situation("cut") == 3
 
 
 def test_instances_served_side_by_side_end_side_by_side() -> None:

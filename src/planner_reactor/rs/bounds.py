@@ -15,7 +15,7 @@ may stop again, a port, a time that is worked out at run time) has no bound: `in
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import reduce
 from math import inf
 from typing import TypeAlias
@@ -43,6 +43,7 @@ from planner_reactor.rs.terms import (
     Text,
     Value,
     Variable,
+    calls,
 )
 from planner_reactor.rs.vocabulary import BUILT_IN, Signature
 
@@ -98,7 +99,10 @@ class Bounds:
         """Seconds in which every instance of this situation in service has ended, once it is drained."""
         if name not in self._situations:
             self._situations[name] = inf  # asserted from below itself: no bound
-            self._situations[name] = max((self.going(body).end for body in self._served(name)), default=0.0)
+            bodies = self._served(name)
+            # an instance is complete when its descendants are, also those whose ASSERT a `#` has aborted
+            below = [self.going(call).end for body in bodies for call in self._asserts(body)]
+            self._situations[name] = max([self.going(body).end for body in bodies] + below, default=0.0)
         return self._situations[name]
 
     def going(self, process: Process, scope: Scope = {}) -> Latest:  # noqa: B006  # never changed
@@ -125,6 +129,17 @@ class Bounds:
                 return either(tested, self.going(then, scope), self.going(otherwise, scope))
             case Loop(condition, body) | Spawn(condition, body):
                 return self._loop(process, self.going(condition, scope), self.going(body, scope), scope)
+
+    def _asserts(self, process: Process) -> Iterator[Call]:
+        """Every ASSERT in it, and in what it calls."""
+        waiting, seen = [process], set[str]()
+        while waiting:
+            for call in calls(waiting.pop()):
+                if call.name in ("ASSERT", "REASSERT"):
+                    yield call
+                elif call.name not in seen:
+                    seen.add(call.name)
+                    waiting += [schema.body for schema in self._program.clauses(call.name)]
 
     def fresh(self, process: Process, scope: Scope = {}) -> Latest:  # noqa: B006  # never changed
         """From its beginning below a withdrawn instance to its end: every ASSERT in it fails at once."""
