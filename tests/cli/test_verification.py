@@ -61,6 +61,7 @@ def test_one_process_is_compared_with_another(call: Call) -> None:
     assert call("verify", "plant.rsl", "Better", "--refines", "Worse", *seeing, "--json").object["refines"] is True
     back = call("verify", "plant.rsl", "Worse", "--refines", "Better", *seeing, "--json")
     assert (back.status, back.object["refines"]) == (1, False)
+    assert back.object["replayed"] is True
     assert (back.object["refuted"], back.object["counterexample"]) == ("refines Better", ["kit!2"])
 
 

@@ -19,7 +19,10 @@ from planner_reactor.analysis.ideal import (
 )
 from planner_reactor.analysis.refinement import refines
 from planner_reactor.analysis.systems import System
+from planner_reactor.calls.replaying import replay
 from planner_reactor.experiments.ideal_reactors import GOAL, NOTHING, chain, environment, planned, regimes
+from planner_reactor.rs.configurations import World, spawned_situations
+from planner_reactor.rs.parser import parse_process, parse_program
 from planner_reactor.workcell.environments import ASSUMPTIONS
 
 ONE = ("cap",)
@@ -56,6 +59,17 @@ def test_the_reactor_without_assumptions_works_wherever_one_fails_and_where_near
     assert relaxed.rests_on <= {"AO"}
     worlds = [NOTHING, *(frozenset({name}) for name in SINGLE), frozenset({"AQ", "AS", "AM", "ADD"})]
     assert all(v.holds for v in ideal(relaxed, environment(ONE), GOAL, worlds).values())
+
+
+@pytest.mark.parametrize("name", ["AQ", "AF"])
+def test_a_counterexample_runs_in_the_executer(name: str) -> None:
+    world = environment(ONE)(frozenset({name}))
+    found = achieves(reactor().text, world, GOAL).counterexample
+    assert found is not None
+    program, process = parse_program(world + reactor().text), parse_process("EM | REACTOR")
+    rules = World(program, spawned=spawned_situations(program, process))
+    assert replay([process], rules, (*found.prefix, *found.cycle)).done
+    assert not replay([process], rules, (*found.prefix[1:], *found.cycle), tries=30).done
 
 
 def test_equation_12_asks_only_for_worlds_in_which_all_of_omega_holds() -> None:

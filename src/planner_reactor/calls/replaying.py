@@ -126,11 +126,18 @@ class _Attempt:
 
     def _next(self, names: Sequence[str]) -> int:
         """Who acts next: those of the name that is wanted come first, then who only has to come to a port."""
-        wanted = self._moments[self.matched].label[0] if self.matched < len(self._moments) else ""
-        ports = ("IN", "OUT")
-        order = sorted(range(len(names)), key=lambda n: (
-            0 if names[n] == wanted or (wanted == "COM" and names[n] in ports) else 1 if names[n] in ports else 2, n
-        ))  # fmt: skip
+        label = self._moments[self.matched].label if self.matched < len(self._moments) else ("", (), "", ())
+        port, value = label[1] if label[0] == "COM" else (None, None)
+
+        def rank(name: str) -> int:
+            if name.startswith("!"):
+                return int(name != f"!{value}")
+            kind, _, at = name.partition(" ")
+            if kind in ("IN", "OUT"):
+                return 0 if at == str(port) else 1
+            return 0 if name == label[0] else 2
+
+        order = sorted(range(len(names)), key=lambda n: (rank(names[n]), n))
         return order[self._choose(len(order))]
 
     def _number(self, stream: str, low: float, high: float) -> float:

@@ -21,7 +21,11 @@ from planner_reactor.analysis.temporal import Here, atoms
 from planner_reactor.calls.hosts import HostSource
 from planner_reactor.calls.inputs import whole
 from planner_reactor.calls.processes import Subject, subject
+from planner_reactor.calls.replaying import replay
 from planner_reactor.errors import InputError
+
+REPLAYS = 300
+"""Runs of the executer in search of one that goes along a counterexample."""
 
 
 def verify(
@@ -42,8 +46,8 @@ def verify(
     `deadlock_free`, `zeno_free` and `refines` (None: not asked, or not decided within the limit), `properties` (each
     with `property`, `holds`, `counterexample`, `cycle`, `then`), `refuted` (what was refuted first, or None), its
     `counterexample` (the steps), `cycle` (how many of them, at the end, go round for ever) and `then` (what follows
-    them: "round", "nothing", or "anything", as all is decided), `states` and `complete`. Raises SourceError for a wrong
-    text or property, InputError for a wrong argument.
+    them: "round", "nothing", or "anything", as all is decided), `replayed` (was it run in the executer, step by step?),
+    `states` and `complete`. Raises SourceError for a wrong text or property, InputError for a wrong argument.
     """
     limit = whole("limit", limit, 1)
     asked = subject(file, process, host=host)
@@ -54,35 +58,30 @@ def verify(
     )
     verdicts = {"deadlock_free": deadlock_free(system), "zeno_free": zeno_free(system)}
     checked = [(str(p), check(system, p)) for p in read]
-    compared = _compared(asked, file, refines, tuple(seeing), names, host, limit)
+    old = subject(file, refines, host=host) if refines is not None else None
+    compared = _compared(asked, old, tuple(seeing), names, limit)
     if compared is not None:
         found = Lasso(compared.run, (), decided=True) if compared.holds is False else None
         verdicts[f"refines {refines}"] = Verdict(compared.holds, found)
+    ran = {f"refines {refines}": old}  # what the other can do and this cannot, the other does
     return {
         "deadlock_free": verdicts["deadlock_free"].holds,
         "zeno_free": verdicts["zeno_free"].holds,
         "refines": compared.holds if compared is not None else None,
         "properties": [{"property": text, "holds": v.holds, **_shown(v.counterexample)} for text, v in checked],
-        **_first_refuted([*verdicts.items(), *checked]),
+        **_first_refuted([(name, v, ran.get(name) or asked) for name, v in (*verdicts.items(), *checked)]),
         "states": len(system.states),
         "complete": system.complete,
     }
 
 
 def _compared(
-    asked: Subject,
-    file: str | Path,
-    refines: str | None,
-    seeing: tuple[str, ...],
-    names: Names,
-    host: HostSource | None,
-    limit: int,
+    asked: Subject, old: Subject | None, seeing: tuple[str, ...], names: Names, limit: int
 ) -> Refinement | None:
-    if refines is None:
+    if old is None:
         if seeing:
             raise InputError("seeing: what is to be seen is asked for with `refines` only")
         return None
-    old = subject(file, refines, host=host)
     seen = tuple(_seen(text, names) for text in seeing)
     if not seen:
         raise InputError("refines: expected what is to be seen, such as `--seeing 'succeeded Kit'`")
@@ -97,11 +96,13 @@ def _seen(text: str, names: Names) -> Atom:
     return formula.atom
 
 
-def _first_refuted(verdicts: Iterable[tuple[str, Verdict]]) -> dict[str, Any]:
-    for name, verdict in verdicts:
-        if verdict.counterexample is not None:
-            return {"refuted": name, **_shown(verdict.counterexample)}
-    return {"refuted": None, **_shown(None)}
+def _first_refuted(verdicts: Iterable[tuple[str, Verdict, Subject]]) -> dict[str, Any]:
+    """The first that was refuted, and whether the executer can be led along its counterexample, twice round."""
+    for name, verdict, whose in verdicts:
+        if (found := verdict.counterexample) is not None:
+            run = replay([whose.call], whose.world, (*found.prefix, *found.cycle, *found.cycle), tries=REPLAYS)
+            return {"refuted": name, **_shown(found), "replayed": run.done}
+    return {"refuted": None, **_shown(None), "replayed": None}
 
 
 def _shown(found: Lasso | None) -> dict[str, Any]:

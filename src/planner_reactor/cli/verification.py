@@ -70,7 +70,7 @@ def _show(result: dict[str, Any], refines: str | None) -> None:
     for name, verdict in _verdicts(result, refines):
         print(f"{name}: {VERDICTS[verdict]}")
     if result["refuted"] is not None:
-        print(f"counterexample to {result['refuted']}:")
+        print(f"counterexample to {result['refuted']}{', replayed in the executer' if result['replayed'] else ''}:")
         _show_steps(result["counterexample"], result["cycle"], result["then"])
     print(f"{result['states']} states" + ("" if result["complete"] else ", and more that were not looked at"))
 

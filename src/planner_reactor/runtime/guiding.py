@@ -1,6 +1,5 @@
-"""An executer whose free choices are made by somebody else: which strand has the next turn, which of those that wait for
-this instant is told first, how long a `Term` lasts, what `Ran` draws.
-
+"""An executer whose free choices are made by somebody else: which strand has the next turn, who comes first at a port,
+which of those that wait for this instant is told first, how long a `Term` lasts, what `Ran` draws.
 Left alone the executer takes all of these in one order (first come, first served) or at random; the semantics leaves
 them open. A guided run can follow any run that the semantics allows, a counterexample above all.
 """
@@ -15,11 +14,13 @@ from typing import Any
 from planner_reactor.runtime.clock import VirtualClock
 from planner_reactor.runtime.executer import Executer
 from planner_reactor.runtime.kernel import Kernel
+from planner_reactor.runtime.ports import In, Out
 from planner_reactor.runtime.scheduler import Scheduler
 from planner_reactor.runtime.strands import OVER, READY, WOKEN, Instruction, Strand
 
 Choose = Callable[[Sequence[str]], int]
-"""Which of these? They are told by the names of the leaves that would act."""
+"""Which of these? They are told by the names of the leaves that would act (`IN p` for a port), or, if it is asked who
+comes first at a port, by what they write (`!3`)."""
 
 Draw = Callable[[str, float, float], float]
 """A number for a leaf of this name, between the two."""
@@ -98,10 +99,23 @@ class _Ready(deque[Strand]):
             if number < len(self):
                 strand = self[number]
                 del self[number]
+                self._choose_partner(strand)
                 return strand
             self._scheduler.fire(number - len(self))
             if self._kernel.due:
                 self._kernel.settle()
+
+    def _choose_partner(self, strand: Strand) -> None:
+        """At a port where several wait for this strand, which comes first is chosen too."""
+        leaf = strand.pc
+        if not isinstance(leaf, In | Out) or (port := leaf.port_of(strand)) is None:
+            return
+        waiting = list(port.waiting()) if port.writers == isinstance(leaf, In) else []
+        if len(waiting) > 1:
+            chosen = waiting[self._scheduler.choose([f"!{other.value}" for other in waiting])]
+            for other in (chosen, *(w for w in waiting if w is not chosen)):
+                port.unlink(other)
+                port.append(other)
 
     def _nobody(self) -> Strand:
         """One that has no turn: what was ready is no more."""
@@ -126,6 +140,8 @@ def guide(executer: Executer, scheduler: GuidedScheduler) -> None:
 
 def _name_of(subject: object) -> str:
     leaf = getattr(subject, "pc", None)
+    if isinstance(leaf, In | Out) and isinstance(subject, Strand) and (port := leaf.port_of(subject)) is not None:
+        return f"{'IN' if isinstance(leaf, In) else 'OUT'} {port.name}"
     setting = getattr(leaf, "setting", None)
     return str(getattr(setting, "name", getattr(leaf, "name", "")))
 

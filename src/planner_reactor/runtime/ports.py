@@ -7,6 +7,8 @@ costs next to nothing.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 from planner_reactor.rs.expressions import EvaluationError
 from planner_reactor.rs.terms import Number, Symbol, Text, Value
 from planner_reactor.runtime.leaves import Setting
@@ -44,6 +46,13 @@ class Port:
         else:
             after.before = first.after = None
         first.link = None
+
+    def waiting(self) -> Iterator[Strand]:
+        """Those who wait, first come first."""
+        strand = self.first
+        while strand is not None:
+            yield strand
+            strand = strand.after
 
     def unlink(self, strand: Strand) -> None:
         before, after = strand.before, strand.after
@@ -128,6 +137,13 @@ class Out:
             reader.frame[leaf.target] = value
         return communicated(self, strand, reader, leaf, port.name, value)
 
+    def port_of(self, strand: Strand) -> Port | None:
+        """The port at which this strand would communicate; None if its name has no value."""
+        try:
+            return self._port or self.ports.named(self._name(strand.frame))
+        except (EvaluationError, TypeError):
+            return None
+
     def cancel(self, strand: Strand) -> None:
         strand.link.unlink(strand)
 
@@ -167,6 +183,13 @@ class In:
             strand.frame[self.target] = value
         leaf: Out = writer.pc  # type: ignore[assignment]  # writers wait in an OUT
         return communicated(self, strand, writer, leaf, port.name, value)
+
+    def port_of(self, strand: Strand) -> Port | None:
+        """The port at which this strand would communicate; None if its name has no value."""
+        try:
+            return self._port or self.ports.named(self._name(strand.frame))
+        except (EvaluationError, TypeError):
+            return None
 
     def cancel(self, strand: Strand) -> None:
         strand.link.unlink(strand)
