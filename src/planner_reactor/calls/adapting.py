@@ -17,12 +17,14 @@ from typing import Any
 from msgspec.structs import replace
 
 from planner_reactor.analysis.labels import show_label
-from planner_reactor.analysis.protocols import LAWS, LIMIT, Checked, Protocol, check
+from planner_reactor.analysis.protocols import LAWS, LIMIT, Checked, Counterexample, Protocol, check
 from planner_reactor.calls.hosts import HostSource, find_host
 from planner_reactor.calls.inputs import one_of, read_text, whole
 from planner_reactor.calls.processes import Subject, subject
+from planner_reactor.calls.replaying import replay
 from planner_reactor.errors import InputError, nearest
 from planner_reactor.rs.bounds import Bounds
+from planner_reactor.rs.configurations import World
 from planner_reactor.rs.loading import load_process
 from planner_reactor.rs.printer import show
 from planner_reactor.rs.reactions import (
@@ -51,6 +53,9 @@ from planner_reactor.rs.terms import (
 )
 from planner_reactor.runtime import Host, Scheduler, VirtualClock
 
+LONG = 1e6
+"""Seconds that a process may take where any age will do."""
+
 MODES = ("drain", "wait", "versions")
 HOLDING = ("DRAIN", "WAIT", "WAITINHIBIT", "INHIBIT", "UNINHIBIT", "RENEW", "RETIRE", "WAITOLD")
 
@@ -68,7 +73,8 @@ def verify_adaptation(
 
     Returns `consistent`, `safe`, `atomic`, `local`, `bounded` (does each hold?), `bound_s` (seconds; None if it depends
     on more than windows), `broken` (the law with the shortest counterexample, or None), `why`, `counterexample` (its
-    steps), `cycle` (how many of them, at the end, go round for ever), `script` and `states`. Raises SourceError for a
+    steps), `cycle` (how many of them, at the end, go round for ever), `replayed` (does the executer
+    take these steps?), `script` and `states`. Raises SourceError for a
     wrong text, InputError for a wrong argument, BudgetError above `limit` states.
     """
     limit = whole("limit", limit, 1)
@@ -80,7 +86,20 @@ def verify_adaptation(
     if not _named(script, HOLDING):
         script = _worded(mode, surgery, present)
     found = _looked_at(asked, script, surgery, limit)
-    return _told(found, script, _bound(script, present, asked, host))
+    told = _told(found, script, _bound(script, present, asked, host))
+    return {**told, "replayed": None if found.first is None else _replayed(asked, script, found.first)}
+
+
+def _replayed(asked: Subject, script: Process, found: Counterexample) -> bool:
+    """Does the executer take the same steps? What goes round does so three times."""
+    around = found.path[len(found.path) - found.cycle :]
+    return replay([asked.call, script], _opened(asked.world, LONG), (*found.path, *around, *around)).done
+
+
+def _opened(world: World, longest: float) -> World:
+    """The same with processes of the host that may end at any age."""
+    own = {name: renewed(s, window=(0.0, longest)) for name, s in world.signatures.items() if s.window}
+    return replace(world, signatures={**world.signatures, **own})
 
 
 def _text(adapt: str) -> str:
@@ -206,7 +225,6 @@ def _worded(mode: str, surgery: Surgery, present: list[Reaction]) -> Process:
 
 
 def _looked_at(asked: Subject, script: Process, surgery: Surgery, limit: int) -> Checked:
-    open_ = {name: renewed(own, window=(0.0, inf)) for name, own in asked.world.signatures.items() if own.window}
     protocol = Protocol(
         reactor=asked.call,
         script=script,
@@ -214,7 +232,7 @@ def _looked_at(asked: Subject, script: Process, surgery: Surgery, limit: int) ->
         kills=frozenset(surgery.kills),
         adds=frozenset(surgery.adds),
     )
-    return check(protocol, replace(asked.world, signatures={**asked.world.signatures, **open_}), limit=limit)
+    return check(protocol, _opened(asked.world, inf), limit=limit)
 
 
 def _bound(script: Process, present: list[Reaction], asked: Subject, host: HostSource | None) -> float | None:
