@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from types import ModuleType
 
+from planner_reactor.analysis.observing import WORDS
 from planner_reactor.cli.application import NAME
 from planner_reactor.cli.later import LATER
 from planner_reactor.logic import itl_syntax
@@ -135,12 +136,21 @@ def _examples() -> str:
     return "\n".join([*lines, ""])
 
 
+def _property_words() -> str:
+    """The words of properties, with what they speak of."""
+    lines = ["| word | of | true when |", "|---|---|---|"]
+    for word, (subject, says) in WORDS.items():
+        lines.append(f"| `{word}` | {'–' if subject == 'nothing' else subject} | {says} |")
+    return "\n".join([*lines, ""])
+
+
 MADE: Mapping[str, Callable[[], str]] = {
     "examples": _examples,
     "grammar": lambda: _indented_in(grammar),
     "imports": _imports,
     "itl_grammar": lambda: _indented_in(itl_syntax),
     "later": _later,
+    "property_words": _property_words,
     "laws": laws,
     "non_laws": non_laws,
     "runtime_terms": lambda: _indented_in(states),
