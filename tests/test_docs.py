@@ -277,6 +277,8 @@ SAMPLES = {
     "check": "check examples/11_mistakes.rsl",
     "plan": "plan examples/09_cafe.itl",
     "network": "network examples/12_intervals.txt",
+    "evolve": "evolve examples/14_limits.rsl Thermometer",
+    "limits": "limits examples/14_limits.rsl 'Room[t, s]' --sensors Alarm",
     "verify": "verify examples/03_ports.rsl Main",
 }
 

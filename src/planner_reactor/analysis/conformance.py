@@ -77,6 +77,10 @@ class Follower:
             raise Disagreement(f"{seconds} s passed, at most {max(most for _, most in room)} allowed")
         self.configs = _different([elapsed(c, min(seconds, most), self._world) for c, most in allowed])
 
+    def room(self) -> float:
+        """Seconds that may pass now, whatever configuration the run is in."""
+        return min(0.0 if urgent(c, self._world) else slack(c, self._world) for c in self.configs)
+
     # -- from outside
 
     def begins(self, root: int, process: Process, scope: Bindings = ()) -> None:

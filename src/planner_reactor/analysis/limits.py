@@ -3,7 +3,7 @@
 A limit is the first state of a path in which one component of the network invokes a recursion with changed arguments,
 reaches a pseudo-bound (a sensory process), or ends for good; or in which nothing can evolve any more. The other
 components are then written at their recursion heads, so `TEM[p + g, a]` says that the object has moved and nothing
-else. Components communicate: what a camera reads is what the object says.
+else. Components communicate: what one reads is what another writes.
 
 Conditions leave out how long things take and what meets within the network. A delay of unknown length may end at any
 time; delays of known length take exactly that, so other delays may give other limits. Zero-time tests are urgent, and

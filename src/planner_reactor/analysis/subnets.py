@@ -1,8 +1,8 @@
 """The parts of a network, what they say to each other, and the subnet that matters for given ports (X §7, "Snet").
 
-The components of a process are the calls that its definitions compose with `|`: of GEM[p, a, pr] they are Object,
-Camera, Robot, Tactile, Dist. A component matters for a port if it reads or writes it, or if one that matters depends
-on it: a reader on whoever writes, a writer on whoever reads, unless it writes by a STREAM, which nobody holds up.
+The components of a process are the calls that its definitions compose with `|`, however deep: of GEM (X §5.2) there
+are five. A component matters for a port if it reads or writes it, or if one that matters depends on it: a reader on
+whoever writes, a writer on whoever reads, unless it writes by a STREAM, which nobody holds up.
 """
 
 from __future__ import annotations

@@ -61,12 +61,12 @@ def evolve(
     `complete`. Raises SourceError for a wrong text, InputError for a wrong argument.
     """
     limit = whole("limit", limit, 1)
-    model = _model(file, process, host, given or {})
-    world = Noting(**{name: getattr(model.world, name) for name in World.__struct_fields__})
-    open_to = _ports(model, ports)
+    subject = model(file, process, host=host, given=given)
+    world = Noting(**{name: getattr(subject.world, name) for name in World.__struct_fields__})
+    open_to = _ports(subject, ports)
     found: list[tuple[tuple[Condition, ...], evolution.State]] = []
     complete = True
-    for start in evolution.beginnings(model.call, world):
+    for start in evolution.beginnings(subject.call, world):
         if every:
             reached, all_of_it = evolution.reachable(start, world, open_ports=open_to, limit=limit)
             found, complete = [*found, *reached], complete and all_of_it
@@ -100,13 +100,13 @@ def limits(
     network that has changed), `states` and `complete`.
     """
     limit = whole("limit", limit, 1)
-    model = _model(file, process, host, given or {})
+    subject = model(file, process, host=host, given=given)
     bounds = tuple(name for name in names_in(sensors) if name)
-    known = {*model.world.program.names, *(set(model.world.signatures) - set(BUILT_IN))}
+    known = {*subject.world.program.names, *(set(subject.world.signatures) - set(BUILT_IN))}
     for name in bounds:
         if name not in known:
             raise unknown("sensor", name, sorted(known))
-    found = limit_set(model.call, model.world, sensors=bounds, ports=_ports(model, ports), limit=limit)
+    found = limit_set(subject.call, subject.world, sensors=bounds, ports=_ports(subject, ports), limit=limit)
     listed = [
         {
             "condition": text(entry.condition),
@@ -133,7 +133,10 @@ def given_values(settings: Iterable[str]) -> dict[str, float]:
     return found
 
 
-def _model(file: str | Path, process: str, host: HostSource | None, given: Mapping[str, float]) -> Model:
+def model(
+    file: str | Path, process: str, *, host: HostSource | None = None, given: Mapping[str, float] | None = None
+) -> Model:
+    """The process `process` of a file `*.rsl`, open names read as unknowns. Raises what `evolve` raises."""
     source, maker = read_text(file), find_host(host) if host is not None else None
     call = called(process)
     used = maker(Scheduler(VirtualClock())) if maker else Host("none")
@@ -143,7 +146,7 @@ def _model(file: str | Path, process: str, host: HostSource | None, given: Mappi
         raise RSError(Source(source, str(file)).shown(errors))
     together = _with_root(program, call)
     linked = Linked(together, {**used.signatures, **BUILT_IN}, used.functions)
-    values = _values(open_names(linked), call, together, given)
+    values = _values(open_names(linked), call, together, given or {})
     made = with_values(together, values)
     static = check(made, signatures=used.signatures, functions=used.functions)
     errors = [f for f in static if f.severity == "error"]
@@ -177,8 +180,8 @@ def _symbols(call: Call) -> Iterable[str]:
     return (s.name for s in names(call.arguments) if isinstance(s, Symbol))
 
 
-def _ports(model: Model, ports: str | Iterable[str] | None) -> frozenset[Value]:
-    parts: tuple[Process, ...] = network(model.call, model.world).components
+def _ports(subject: Model, ports: str | Iterable[str] | None) -> frozenset[Value]:
+    parts: tuple[Process, ...] = network(subject.call, subject.world).components
     if ports is None:
-        return open_ports(parts, model.world)
+        return open_ports(parts, subject.world)
     return frozenset(name for name in names_in(ports) if name)

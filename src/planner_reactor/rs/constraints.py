@@ -67,6 +67,44 @@ def _satisfiable(constraints: tuple[Constraint, ...]) -> Verdict:
     return "no"
 
 
+def solution(constraints: Sequence[Constraint]) -> dict[Unknown | Applied, Fraction] | None:
+    """Values of the parts for which all comparisons hold, or None if there are none. Nothing else is looked at."""
+    compared = [c for c in constraints if isinstance(c, Compared)]
+    gaps = [c for c in compared if c.relation == "/="]
+    rows = [row for c in compared if c.relation != "/=" for row in _rows(c)]
+    for sides in product((1, -1), repeat=min(len(gaps), MOST_GAPS)):
+        chosen = [*rows, *(_side(gap, side) for gap, side in zip(gaps, sides, strict=False))]
+        if _solvable(chosen):
+            return _solved(chosen)
+    return None
+
+
+def _solved(rows: list[Row]) -> dict[Part, Fraction]:
+    """Parts are eliminated one by one; then each gets a value that fits those found after it."""
+    if not (rows := [row for row in rows if row[0]]):
+        return {}
+    part = _cheapest(rows)
+    values = _solved(_without(part, rows))
+    low: list[tuple[Fraction, bool]] = []
+    high: list[tuple[Fraction, bool]] = []
+    for factors, constant, strict in rows:
+        if (own := dict(factors).get(part)) is not None:
+            others = (factor * values.setdefault(p, Fraction(0)) for p, factor in factors if p != part)
+            (high if own > 0 else low).append((-(constant + sum(others)) / own, strict))
+    values[part] = _between(low, high)
+    return values
+
+
+def _between(low: Sequence[tuple[Fraction, bool]], high: Sequence[tuple[Fraction, bool]]) -> Fraction:
+    if not low and not high:
+        return Fraction(0)
+    if not high:
+        return max(bound for bound, _ in low) + 1
+    if not low:
+        return min(bound for bound, _ in high) - 1
+    return (max(bound for bound, _ in low) + min(bound for bound, _ in high)) / 2
+
+
 def _rows(c: Compared) -> Iterator[Row]:
     if c.relation == "==":
         yield _row(c.value - c.tolerance, 1, strict=False)
@@ -182,12 +220,14 @@ def _mentioned(c: Constraint) -> Iterator[Unknown]:
 
 
 def holds(constraint: Constraint, values: Mapping[Unknown, Any], slack: float = 1e-9) -> bool:
-    """Does it hold for these values of its unknowns? Numbers may miss by `slack`."""
+    """Does it hold for these values of its unknowns? Numbers may miss by less than `slack`."""
     if isinstance(constraint, Alike):
         return (instance(constraint.left, values) == instance(constraint.right, values)) is constraint.holds
     number = instance(constraint.value, values)
     match constraint.relation:
-        case "<" | "<=":
+        case "<":
+            return bool(number < slack)
+        case "<=":
             return bool(number <= slack)
         case "==":
             return bool(abs(number) <= constraint.tolerance + slack)

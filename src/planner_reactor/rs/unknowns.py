@@ -246,13 +246,21 @@ def split(value: Any) -> tuple[dict[Unknown | Applied, Number], Number]:
 
 def joined(factors: Mapping[Unknown | Applied, Number], constant: Number) -> Any:
     """The value with these factors and this constant, in normal form."""
-    parts = tuple(sorted(((p, f) for p, f in factors.items() if f), key=lambda found: _age(found[0])))
-    constant = round(constant, DECIMALS) if isinstance(constant, float) else constant
+    parts = tuple(sorted(((p, _plain(f)) for p, f in factors.items() if f), key=lambda found: _age(found[0])))
+    constant = _plain(constant)
     if not parts:
         return constant
     if len(parts) == 1 and parts[0][1] == 1 and not constant:
         return parts[0][0]
     return Sum(parts, constant)
+
+
+def _plain(number: Number) -> Number:
+    """The number in one form: 5.0 is 5, and what only the order of additions has made is gone."""
+    if isinstance(number, float) and not isinf(number):
+        number = round(number, DECIMALS)
+        return int(number) if number.is_integer() else number
+    return number
 
 
 def unknowns(value: Any) -> Iterator[Unknown]:
