@@ -6,12 +6,15 @@ import pytest
 
 from planner_reactor.analysis.labels import show_label
 from planner_reactor.analysis.protocols import Checked, Protocol, check
+from planner_reactor.calls.replaying import replay
 from planner_reactor.errors import BudgetError
+from planner_reactor.reactor.situations import Situations
 from planner_reactor.rs.configurations import Ending, World, spawned_situations
 from planner_reactor.rs.parser import parse_process, parse_program
 from planner_reactor.rs.store import Store
 from planner_reactor.rs.terms import Value
 from planner_reactor.rs.vocabulary import Signature
+from planner_reactor.runtime.strands import Strand
 
 OPEN = (0.0, float("inf"))
 EITHER = ("RSB", "RSX", "Work")
@@ -87,6 +90,16 @@ def checked(
     return check(protocol, world, limit=limit)
 
 
+def runs(text: str, script: str, found: Checked, law: str, reactor: str = "R") -> bool:
+    """Does the executer take these steps? What goes round does so three times."""
+    program = parse_program(text)
+    signatures = {name: Signature(name, window=(0.0, 1e6)) for name in LEAVES}
+    world = World(program, signatures, endings=endings, spawned=spawned_situations(program))
+    broken = found.broken[law]  # type: ignore[index]
+    around = broken.path[len(broken.path) - broken.cycle :]
+    return replay([parse_process(reactor), parse_process(script)], world, (*broken.path, *around, *around)).done
+
+
 def steps(found: Checked, law: str) -> list[str]:
     return [show_label(label) for label in found.broken[law].path]  # type: ignore[index]
 
@@ -97,31 +110,52 @@ def test_nothing_is_to_be_said_against_drains_from_the_top(drains: str) -> None:
 
 
 def test_wait_then_inhibit_is_unsafe_after_six_steps() -> None:
-    found = checked(NESTED, f"WAIT[sa] : INHIBIT[sa] : {SURGERY}")
+    script = f"WAIT[sa] : INHIBIT[sa] : {SURGERY}"
+    found = checked(NESTED, script)
+    assert runs(NESTED, script, found, "safe")
     assert steps(found, "safe") == [
         "Q", "WAIT[sa] waits", "ASSERT[sa] waits", "SIT[sa]<1>", "REASSERT[sb] waits", "INHIBIT[sa]",
     ]  # fmt: skip
 
 
 def test_inhibit_then_wait_cannot_end_after_three_steps() -> None:
-    found = checked(NESTED, f"INHIBIT[sa] : WAIT[sa] : {SURGERY}")
+    script = f"INHIBIT[sa] : WAIT[sa] : {SURGERY}"
+    found = checked(NESTED, script)
+    assert runs(NESTED, script, found, "bounded")
     assert set(found.broken) == {"bounded"}
     assert steps(found, "bounded") == ["Q", "ASSERT[sa] waits", "INHIBIT[sa]"]
     assert not found.broken["bounded"].cycle
 
 
+@pytest.fixture
+def table_2(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The executer reads WAIT as the table does."""
+
+    def wait(self: Situations, kind: str, name: str, strand: Strand, owner: object) -> None:
+        situation = self.named(name)
+        situation.waiters.append((kind, strand, owner))
+        if not any(instance.status == "on" for instance in situation.instances.values()):
+            self._quiescent(situation)
+
+    monkeypatch.setattr(Situations, "wait", wait)
+
+
+@pytest.mark.usefixtures("table_2")
 def test_table_2s_wait_cuts_off_a_second_reaction() -> None:
     script = "WAITINHIBIT[s] : KILL[2] : KILL[3] : POST[4] : UNINHIBIT[s]"
     found = checked(TWO, script, adds=(4,), store=NoInstanceOn())
+    assert runs(TWO, script, found, "safe")
     assert steps(found, "safe") == [
         "Q", "ASSERT[s] waits", "SIT[s]<1>", "SIT[s]<1>", "RSY", "SUCCEED[s, 1]", "WAITINHIBIT[s] waits",
     ]  # fmt: skip
     assert "safe" not in checked(TWO, script, adds=(4,)).broken
 
 
+@pytest.mark.usefixtures("table_2")
 def test_a_wait_that_ignores_the_tails_of_bodies_is_unsafe() -> None:
     script = "WAITINHIBIT[s] : KILL[2] : POST[4] : UNINHIBIT[s]"
     found = checked(TAIL, script, kills=(2,), adds=(4,), store=NoInstanceOn())
+    assert runs(TAIL, script, found, "safe")
     assert steps(found, "safe") == [
         "Q", "ASSERT[s] waits", "SIT[s]<1>", "RSX", "SUCCEED[s, 1]", "WAITINHIBIT[s] waits",
     ]  # fmt: skip
@@ -129,18 +163,24 @@ def test_a_wait_that_ignores_the_tails_of_bodies_is_unsafe() -> None:
 
 
 def test_waiting_for_the_parent_of_a_disabled_child_cannot_end_and_draining_it_can() -> None:
-    found = checked(NESTED, f"WAITINHIBIT[sa] : {SURGERY}", reactor="R | Broken")
+    script = f"WAITINHIBIT[sa] : {SURGERY}"
+    found = checked(NESTED, script, reactor="R | Broken")
+    assert runs(NESTED, script, found, "bounded", reactor="R | Broken")
     assert steps(found, "bounded") == ["Q", "ASSERT[sa] waits", "DISABLE[sb, A]"]
     assert not checked(NESTED, f"DRAIN[sa] : {SURGERY}", reactor="R | Broken").broken
 
 
 def test_waiting_for_a_child_before_its_parent_cannot_end() -> None:
-    found = checked(NESTED, f"WAITINHIBIT[sb] : WAITINHIBIT[sa] : {SURGERY}")
+    script = f"WAITINHIBIT[sb] : WAITINHIBIT[sa] : {SURGERY}"
+    found = checked(NESTED, script)
+    assert runs(NESTED, script, found, "bounded")
     assert steps(found, "bounded") == ["Q", "ASSERT[sa] waits", "WAITINHIBIT[sb] waits"]
 
 
 def test_draining_a_child_before_its_parent_holds_the_parent_up() -> None:
-    found = checked(NESTED, f"DRAIN[sb] : DRAIN[sa] : {SURGERY}")
+    script = f"DRAIN[sb] : DRAIN[sa] : {SURGERY}"
+    found = checked(NESTED, script)
+    assert runs(NESTED, script, found, "local")
     assert set(found.broken) == {"local"}
     assert found.broken["local"].why == "sa is held up at sb, and is not drained yet"
     assert len(steps(found, "local")) == 5
@@ -150,6 +190,7 @@ def test_waitinhibit_may_be_overtaken_for_ever_under_weak_fairness_and_a_drain_m
     surgery = "KILL[3] : POST[4] : UNINHIBIT[s]"
     found = checked(OVERLAPPING, f"WAITINHIBIT[s] : {surgery}", kills=(3,), adds=(4,))
     lasso = found.broken["bounded"]
+    assert runs(OVERLAPPING, f"WAITINHIBIT[s] : {surgery}", found, "bounded")
     assert set(found.broken) == {"bounded"}
     assert lasso.cycle
     around = [show_label(label) for label in lasso.path[-lasso.cycle :]]
