@@ -20,6 +20,7 @@ class Bench:
         self.trace = Trace(lambda: self.scheduler.now)
         self.flags: dict[str, bool | None] = {"A": True, "B": True}
         self.failing: set[str] = set()
+        self.abandoned: list[str] = []
         self.host = host or self._host()
         self.reactor = Reactor(
             self.scheduler, host=self.host, perceptions=PerceptionChannel(), trace=self.trace, journal=journal
@@ -31,7 +32,11 @@ class Bench:
 
         @host.process(window=(0.0, 5.0))
         def Do(what: str, seconds: float) -> Iterator[float]:
-            yield seconds
+            try:
+                yield seconds
+            except GeneratorExit:
+                self.abandoned.append(what)
+                raise
             if what in self.failing:
                 raise Aborted(f"{what} failed")
 

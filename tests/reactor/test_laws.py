@@ -15,6 +15,7 @@ from planner_reactor.reactor.laws import CHECKED
 from planner_reactor.reactor.reactor import Reactor
 from planner_reactor.reactor.situations import Situations
 from planner_reactor.rs.parser import parse_process
+from planner_reactor.rs.terms import Call
 from planner_reactor.runtime import Budgets
 from tests.reactor.driving import FIRST, SECOND, Bench, change
 
@@ -80,6 +81,19 @@ def undurable(patch: Patch) -> None:
     scripted(patch, "DRAIN[part] : KILL[2] : KILL[3] : POST[4] : UNINHIBIT[part]")
 
 
+def acting(patch: Patch) -> None:
+    usual = Reactor.receive
+
+    def receive(self: Reactor, adaptation: Any) -> None:
+        usual(self, adaptation)
+        if adaptation.id == 2:
+            self.halt()
+            self.executer.start_process(Call("Long"), name="stray")
+            self.scheduler.call_after(1.0, self.settle_laws)
+
+    patch.setattr(Reactor, "receive", receive)
+
+
 def dropping(patch: Patch) -> None:
     usual = PerceptionChannel.report
 
@@ -140,6 +154,7 @@ DEFECTS: dict[str, tuple[int, Callable[[Patch], None]]] = {
     "an adaptation applied twice": (6, twice),
     "planned against another version": (7, versionless),
     "applied and not in the journal": (8, undurable),
+    "a process that acts after halt": (15, acting),
     "an older epoch": (7, epochless),
     "a perception dropped": (10, dropping),
     "an instance lost": (11, losing),

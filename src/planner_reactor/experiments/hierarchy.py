@@ -14,7 +14,7 @@ import msgspec
 from msgspec.structs import replace
 
 from planner_reactor.experiments.snapshots import Snapshot, deed
-from planner_reactor.reactor.structure import Reaction
+from planner_reactor.rs.reactions import Reaction
 from planner_reactor.rs.terms import (
     All,
     Call,

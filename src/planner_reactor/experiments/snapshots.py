@@ -12,8 +12,8 @@ from collections.abc import Iterable, Mapping
 import msgspec
 
 from planner_reactor.reactor.reactor import Reactor
-from planner_reactor.reactor.structure import Reaction, reaction_of
 from planner_reactor.rs.parser import parse_program
+from planner_reactor.rs.reactions import Reaction, reaction_of
 from planner_reactor.rs.terms import Call, Number, Symbol, Text, calls
 from planner_reactor.trace import Event
 

@@ -53,7 +53,8 @@ class Transaction:
     surgery: float = 0.0  # when the first reaction was removed or added
     kills: list[int] = field(default_factory=list)  # done
     adds: list[int] = field(default_factory=list)  # done
-    problem: str = ""  # why it came to nothing
+    reason: str = ""  # why it came to nothing, if its deadline is not why: a word
+    problem: str = ""  # and a sentence
 
     @property
     def situations(self) -> tuple[str, ...]:
@@ -127,6 +128,7 @@ class Transactions:
                 try:
                     self._journal.write(Decided(number, "applied", self._scheduler.now))
                 except DiskError as problem:
+                    transaction.reason = "disk"
                     transaction.problem = f"it cannot be made durable: {problem}"
                     return None
                 transaction.state = "committed"
@@ -164,7 +166,7 @@ class Transactions:
                 self._removals.append((transaction.adaptation.id, _removal(transaction)))
                 self._remove()
         else:
-            transaction.state = "refused" if transaction.problem else "timed_out"
+            transaction.state = "refused" if transaction.reason else "timed_out"
             self._journal.note(Decided(transaction.adaptation.id, transaction.state, self._scheduler.now))
             self._executer.unload([r.schema for r in transaction.reactions])
         self._finished(transaction)
@@ -173,6 +175,12 @@ class Transactions:
         """Its bound has passed: the drains are let go, nothing has changed."""
         if transaction.root is not None and transaction.root.outcome is None and transaction.state == "draining":
             self._executer.kill(transaction.root)
+
+    def halt(self) -> None:
+        """The stop button: what is under way comes to nothing, and nothing is removed any more."""
+        for transaction in self.under_way:
+            transaction.reason, transaction.problem = "halted", "the reactor was halted"
+        self._removals.clear()
 
     def _remove(self) -> None:
         """What was retired goes in the order of the adaptations: an older parent may still assert what is removed."""

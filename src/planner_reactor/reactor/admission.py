@@ -17,8 +17,8 @@ import msgspec
 
 from planner_reactor.errors import RefusedError, RSError
 from planner_reactor.link.messages import Adaptation
-from planner_reactor.reactor.structure import Reaction, children, cycle, reaction_of
 from planner_reactor.rs.loading import load
+from planner_reactor.rs.reactions import Reaction, children, cycle, reaction_of
 from planner_reactor.rs.terms import Program, Schema, Value
 from planner_reactor.rs.vocabulary import Signature
 

@@ -13,9 +13,9 @@ import msgspec
 from msgspec.structs import replace
 
 from planner_reactor.link.messages import Adaptation
-from planner_reactor.reactor.structure import REACTION
 from planner_reactor.rs.parser import parse_program
 from planner_reactor.rs.printer import show
+from planner_reactor.rs.reactions import REACTION
 
 
 class Taken(msgspec.Struct, frozen=True):

@@ -1,8 +1,8 @@
 """The reactor's laws, asked after every event (docs/reactor.md, "The reactor's laws").
 
 Each law is a method that looks at the reactor as it stands, or at what has just happened, and gives a sentence for
-every breach. They use nothing that the reactor uses to keep them: counts are kept apart. Laws 1 to 8, 10, 11, 13 and
-14 are asked here; 16 (same seed, same trace) is a claim about two runs.
+every breach. They use nothing that the reactor uses to keep them: counts are kept apart. Laws 1 to 8, 10, 11 and 13
+to 15 are asked here; 16 (same seed, same trace) is a claim about two runs.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from planner_reactor.reactor.versions import Lifetime
 from planner_reactor.rs.reactions import Reaction
 from planner_reactor.runtime import Scheduler
 
-CHECKED = (1, 2, 3, 4, 5, 6, 7, 8, 10, 11, 13, 14)
+CHECKED = (1, 2, 3, 4, 5, 6, 7, 8, 10, 11, 13, 14, 15)
 GRACE = 1e-6
 
 
@@ -48,8 +48,13 @@ class Watched(Protocol):
 
     def over_budget(self) -> str | None: ...
 
+    def commands(self) -> int: ...
+
     @property
     def restoring(self) -> bool: ...
+
+    @property
+    def halted(self) -> bool: ...
 
 
 class Violation(msgspec.Struct, frozen=True):
@@ -115,7 +120,7 @@ class Laws:
 
     def _leaves(self, fields: dict[str, Any]) -> None:
         """Law 2, safe: no reaction in service is interrupted."""
-        if fields["cut"]:
+        if fields["cut"] and not self._reactor.halted:
             self.interruptions += 1
             self.breach(2, f"a body of instance {fields['instance']} of {fields['situation']} was cut off")
 
@@ -151,6 +156,7 @@ class Laws:
         self._balanced()
         self._finite()
         self._disabled()
+        self._halted()
 
     def _atomic(self) -> None:
         """Law 1: of an adaptation everything is there or nothing; what goes, goes first."""
@@ -191,7 +197,7 @@ class Laws:
         if any(t.state == "committed" for t in self._reactor.transactions.under_way):
             return
         running, written = set(self._reactor.reactions), set(self._reactor.journal.state.committed.clauses)
-        if running != written and not self._reactor.restoring:
+        if running != written and not self._reactor.restoring and not self._reactor.halted:
             self.breach(8, f"reactions {sorted(running ^ written)} run and are not in the journal, or the reverse")
 
     def _perceptions(self) -> None:
@@ -223,7 +229,12 @@ class Laws:
         for assumption in self._reactor.failed:
             for situation in self._reactor.resting_on(assumption):
                 if not self._reactor.situations.is_disabled(situation, assumption):
-                    self.breach(14, f"{situation} rests on {assumption}, which has failed, and is not disabled")
+                        self.breach(14, f"{situation} rests on {assumption}, which has failed, and is not disabled")
+
+    def _halted(self) -> None:
+        """Law 15: after HALT no basic process runs, until a reset."""
+        if self._reactor.halted and (running := self._reactor.commands()):
+            self.breach(15, f"{running} basic processes run though the reactor is halted")
 
 
 _WATCHES: dict[str, Callable[[Laws, dict[str, Any]], None]] = {

@@ -13,35 +13,32 @@ from collections import Counter
 from collections.abc import Callable, Hashable, Iterable, Mapping
 from typing import Any
 
-from planner_reactor.errors import RefusedError
+from planner_reactor.errors import InputError, RefusedError
 from planner_reactor.link.channels import PerceptionChannel
 from planner_reactor.link.messages import Adaptation, PerceptionKind
-from planner_reactor.link.surgeries import drained
 from planner_reactor.reactor.adaptation import Transaction, Transactions, refuse_unsafe_kills
 from planner_reactor.reactor.admission import Standing, examine
 from planner_reactor.reactor.assumptions import Assumptions
 from planner_reactor.reactor.built_ins import BuiltIns
+from planner_reactor.reactor.composition import undone
 from planner_reactor.reactor.disks import NoDisk
-from planner_reactor.reactor.journal import Journal, Started, State
+from planner_reactor.reactor.journal import Halted, Journal, Recovery, Started, State
 from planner_reactor.reactor.laws import Laws
 from planner_reactor.reactor.recovery import restore
-from planner_reactor.reactor.structure import REACTION, Reaction
+from planner_reactor.reactor.structure import bound_of, text_of
 from planner_reactor.reactor.versions import Lifetime
-from planner_reactor.rs.bounds import Bounds
 from planner_reactor.rs.parser import parse_program
-from planner_reactor.rs.printer import show
-from planner_reactor.rs.terms import Process, Program, Value, operands
+from planner_reactor.rs.reactions import REACTION, Reaction
+from planner_reactor.rs.terms import Call, Value
 from planner_reactor.rs.vocabulary import BUILT_IN
 from planner_reactor.runtime import Budgets, Executer, Host, Root, Scheduler
 from planner_reactor.trace import Trace
 
+AT_REST = Call("NIL")
 EQUATION_3 = parse_program(f"REACTOR = ADD<m> :: (E[m] # {REACTION}[m])", file="<reactor>")
 
 TOLD_CAUSES = frozenset({"failed", "error", "budget", "assumption"})
 """Causes of failed instances that the planner hears of; the others follow from what it knows already."""
-
-MARGIN = 1.0
-"""Seconds added to a computed bound, for the monitors and the clock."""
 
 
 class Reactor:
@@ -72,6 +69,7 @@ class Reactor:
         self._lifetimes: dict[int, Lifetime] = {}
         self._loaded: dict[int, Reaction] = {}
         self._restoration: Root | None = None
+        self.last_applied: Transaction | None = None
         self.laws = Laws(self)
         self._watches: dict[str, Callable[..., None]] = {
             "added": self._reaction_added,
@@ -111,11 +109,41 @@ class Reactor:
         `InputError` if the journal is none, `DiskError` if it cannot be read or written.
         """
         recovery = self.journal.recover()
-        self.root = self.executer.start("REACTOR")
-        if self.journal.state != State():
-            self._restoration = restore(self, recovery, EQUATION_3)
+        fresh = self.journal.state == State()
         self.journal.write(Started(self.scheduler.now))
+        if self.halted:
+            self.root = self.executer.start_process(AT_REST, name="halted")
+        else:
+            self.root = self.executer.start("REACTOR")
+            if not fresh:
+                self._restoration = restore(self, recovery, EQUATION_3)
         return self.root
+
+    @property
+    def halted(self) -> bool:
+        """Was the stop button pressed, and not yet released by a reset? A crash does not release it."""
+        return self.journal.state.committed.halted
+
+    def halt(self) -> None:
+        """The stop button (law 15): everything is aborted, each basic process with its `abandon`; nothing acts."""
+        if self.halted:
+            return
+        self.journal.note(Halted(True, self.scheduler.now))
+        self.trace.record("halted")
+        self.transactions.halt()
+        for root in list(self.executer.roots):
+            self.executer.kill(root)
+        self.root = self.executer.start_process(AT_REST, name="halted")
+        self.perceive("halted", "stop")
+
+    def reset(self) -> None:
+        """Release the stop button: the reactor begins again on its committed structure. Never done by itself."""
+        if self.halted:
+            self.journal.write(Halted(False, self.scheduler.now))
+            self.trace.record("reset")
+            self.executer.kill(self.root)
+            self.root = self.executer.start("REACTOR")
+            self._restoration = restore(self, Recovery(self.journal.state), EQUATION_3)
 
     # -- adaptation
 
@@ -124,6 +152,8 @@ class Reactor:
         self.counts["received"] += 1
         self.trace.record("adaptation_received", id=adaptation.id, purpose=adaptation.purpose)
         try:
+            if self.halted:
+                raise RefusedError("halted", "the reactor is halted, expected a reset first")
             reactions = examine(adaptation, self._standing())
             killed = tuple(self.reactions[label] for label in adaptation.kills)
             refuse_unsafe_kills(adaptation, killed)
@@ -134,6 +164,16 @@ class Reactor:
             return
         versions = self.journal.state.committed.versions
         self.loaded(reactions, {r.label: versions.get(r.situation or "", 0) + 1 for r in reactions})
+
+    def undo(self, *, number: int) -> None:
+        """Undo the adaptation that was applied last, by one with this id (`InputError` if there is none)."""
+        if self.last_applied is None:
+            raise InputError("nothing was applied since the reactor was started: there is nothing to undo")
+        committed = self.journal.state.committed
+        last, first_label = self.last_applied, committed.highest_label + 1
+        self.receive(
+            undone(last.adaptation, last.before, number=number, epoch=committed.epoch, first_label=first_label)
+        )
 
     def loaded(self, reactions: Iterable[Reaction], versions: Mapping[int, int]) -> None:
         """The definitions of these reactions are there; each belongs to its situation from this version on."""
@@ -160,17 +200,8 @@ class Reactor:
 
     def bound(self, adaptation: Adaptation) -> float:
         """Seconds in which the adaptation will have been applied (R §5.5, *bounded*)."""
-        bounds = Bounds(
-            Program(r.schema for r in self.reactions.values()),
-            self._signatures,
-            {name: process.limit for name, process in self.host.processes.items()},
-            self._bodies_serving,
-        )
-        return bounds.drains(drained(adaptation)) + MARGIN
-
-    def _bodies_serving(self, situation: str) -> tuple[Process, ...]:
-        serving = (r.schema.body for r in self.reactions.values() if r.situation == situation)
-        return tuple(operands(body)[1] for body in serving)
+        limits = {name: process.limit for name, process in self.host.processes.items()}
+        return bound_of(adaptation, self.reactions, self._signatures, limits)
 
     def _standing(self) -> Standing:
         committed = self.journal.state.committed
@@ -197,7 +228,7 @@ class Reactor:
             return
         self._forget(r.label for r in transaction.reactions)
         if transaction.state == "refused":
-            self._refused(adaptation, "disk", transaction.problem)
+            self._refused(adaptation, transaction.reason, transaction.problem)
             return
         self.counts["timed_out"] += 1
         self.trace.record("adaptation_timed_out", id=adaptation.id, bound=transaction.limit)
@@ -207,6 +238,7 @@ class Reactor:
         adaptation = transaction.adaptation
         self.counts["applied"] += 1
         self.laws.applied(transaction)
+        self.last_applied = transaction
         if adaptation.mode != "versions":
             self._forget(adaptation.kills)
         self.assumptions.enable()
@@ -268,6 +300,10 @@ class Reactor:
         self.transactions.changed(label, added=False)
 
     def _reaction_removed(self, label: int) -> None:
+        if self.halted:
+            del self.reactions[label]
+            self._forget([label])
+            return
         retired = self.reactions.pop(label, None) is None
         self.counts["changes_applied"] += 1
         changed = not retired and self.transactions.changed(label, added=False)
@@ -331,6 +367,10 @@ class Reactor:
         """Is what the journal says still coming to life?"""
         return self._restoration is not None and self._restoration.outcome is None
 
+    def commands(self) -> int:
+        """How many basic processes run."""
+        return self.executer.statistics().basic_running
+
     def over_budget(self) -> str | None:
         live = self.executer.processes_live
         if live > self.budgets.processes:
@@ -344,7 +384,4 @@ class Reactor:
 
     def text(self) -> str:
         """The reactor as a program that can be run: equation (3) with its present reactions."""
-        guarded = [f"(E[{label}] # {REACTION}[{label}])" for label in sorted(self.reactions)]
-        equation = " | ".join([*guarded, f"(ADD<m> :: (E[m] # {REACTION}[m]))"])
-        clauses = [show(self.reactions[label].schema) for label in sorted(self.reactions)]
-        return "\n".join([f"REACTOR = {equation}", *clauses]) + "\n"
+        return text_of(self.reactions)
