@@ -25,8 +25,8 @@ from types import CodeType, ModuleType
 ROOT = Path(__file__).parents[2]
 PLACES = {"planner_reactor": ROOT / "src", "tests": ROOT}
 
-CPU = 3.0
-"""Seconds of processor time that a mutant may spend in one test (none needs more than one)."""
+CPU = 1.5
+"""Seconds of processor time that a mutant may spend in one test (the longest needs half of one)."""
 
 MEMORY = 2_000_000_000
 """Bytes that a mutant may use."""

@@ -9,9 +9,9 @@ from tests.conformance.texts import example
 from tests.laws.checking import checked
 from tests.laws.table import LAWS, Law
 
-CHUNK = 25
-PROGRAMS = 300
-TERMS = 25
+CHUNK = 10
+PROGRAMS = 100
+TERMS = 8
 
 
 @pytest.mark.parametrize("first", range(0, PROGRAMS, CHUNK))

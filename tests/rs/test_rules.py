@@ -11,11 +11,23 @@ import pytest
 from planner_reactor.analysis.explore import Exploration, explore
 from planner_reactor.errors import BudgetError
 from planner_reactor.rs.configurations import Config, World
-from planner_reactor.rs.evolves import started
-from planner_reactor.rs.leaves import elapsed, offers, slack, steps
+from planner_reactor.rs.evolves import killed, started
+from planner_reactor.rs.leaves import elapsed, offers, slack, steps, window
 from planner_reactor.rs.parser import parse_process
-from planner_reactor.rs.states import Await, Chain, Ended, Export, Keep, Leaf, Run, Spawning, parts_of
-from planner_reactor.rs.store import Store
+from planner_reactor.rs.states import (
+    Await,
+    Chain,
+    Ended,
+    Export,
+    InstanceNumber,
+    Keep,
+    Leaf,
+    Reaction,
+    Run,
+    Spawning,
+    parts_of,
+)
+from planner_reactor.rs.store import Instance, Store
 from tests.rs.test_evolves import STOPS, run, world
 
 SERVED = "SIT[s]<k> :; (Delay[5] ; SUCCEED[s, k])"
@@ -199,7 +211,9 @@ def test_n6_nested_results_are_merged() -> None:
     config = following("yes<x> ; (yes<y> ; (no<z> ; NIL))", until=0)
     kept = [t for t in inside(config.root(1)) if isinstance(t, Keep)]
     assert [t.bindings for t in kept] == [(("x", 1), ("y", 1), ("z", 0))]
-    assert not any(isinstance(t, Keep) and not t.bindings for t in inside(following("STOP ; a", until=0).root(1)))
+    assert not any(
+        isinstance(t, Keep) and not t.bindings for t in inside(following("STOP ; IN[w]<v>", until=0).root(1))
+    )
 
 
 @pytest.mark.parametrize(
@@ -555,9 +569,9 @@ def test_time_how_long_a_leaf_may_last(text: str, seconds: float) -> None:
 
 def test_testing_and_rounds_are_told_apart_by_kill() -> None:
     """In a round of a loop nothing may be cut, not even where it waits; only a queued ASSERT and a SIT may."""
-    for body, killed in (("NIL", True), ("IN[p]<x>", False), ("Delay[9]", False), ("WAIT[s]", False)):
+    for body, ends in (("NIL", True), ("IN[p]<x>", False), ("Delay[9]", False), ("WAIT[s]", False)):
         config = following("ASSERT[s]", f"E[1] # (STOP :; ({body}))", "Delay[1] ; KILL[1]", until=2)
-        assert isinstance(config.root(3), Ended) == killed, body
+        assert isinstance(config.root(3), Ended) == ends, body
     for condition in ("IN[p]<x>", "NIL", "WAIT[s]", "(Delay[9] ; IN[p]<x>)", "ASSERT[s]"):
         config = following("ASSERT[s]", f"E[1] # ({condition} :; Delay[9])", "Delay[1] ; KILL[1]", until=2)
         assert config.root(3) == Ended(True), condition
@@ -600,3 +614,86 @@ def test_testing_keeps_its_scope_for_every_round() -> None:
     }
     (testing,) = [t for t in inside(following("IN[w]<v> :; b", until=0).root(1)) if hasattr(t, "condition")]
     assert testing.scope == ()
+
+
+# ------------------------------------------------------------------------------------------ roots, and the store alone
+
+
+def test_a_root_has_the_number_that_it_is_given_or_the_next() -> None:
+    w = world()
+    config = started(parse_process("NIL"), w, number=4)
+    assert [n for n, _ in config.roots] == [4]
+    config = started(parse_process("NIL"), w, config=config, number=2)
+    assert [n for n, _ in started(parse_process("NIL"), w, config=config).roots] == [4, 2, 5]
+
+
+def test_n9_a_root_that_is_aborted_from_outside_ends_alone_and_lets_go_of_what_it_held() -> None:
+    w = world()
+    config = following("INHIBIT[t] ; ASSERT[s]", "ASSERT[s]", "WAIT[s]", until=1)
+    after = killed(config, 1, w)
+    assert after.root(1) == Ended(False)
+    assert isinstance(after.root(1), Ended)
+    assert after.root(1).cause == "cancelled"  # type: ignore[union-attr]
+    assert isinstance(after.root(2), Await)
+    assert not isinstance(after.root(3), Ended)
+    assert after.store.inhibitions == ()
+    assert [i.number for i in after.store.instances] == [2]
+    assert killed(after, 2, w).root(3) == Ended(True)
+
+
+def test_assert_does_not_return_before_its_descendants_have_ended() -> None:
+    reactor = "(SIT[s]<k> :; ((ASSERT[t] # Delay[1]) ; SUCCEED[s, k])) | (SIT[t]<j> :; Delay[5])"
+    for until, returned in ((2, False), (4, False), (6, True)):
+        assert isinstance(following(reactor, "ASSERT[s]", until=until).root(2), Ended) == returned
+
+
+def test_sit_what_another_reaction_has_served_does_not_count() -> None:
+    store = Store()
+    store, first = store.asserted("s", (), None)
+    store, second = store.asserted("s", (), None)
+    mine, other = Reaction(1, None), Reaction(2, None)
+    store = store.stamped(first, other)
+    assert [i.number for i in (store.available("s", mine), store.available("s", other)) if i] == [first, second]
+    store = store.stamped(second, other)
+    assert [i.number for i in (store.available("s", other),) if i] == [first]
+    again = store.stamped(first, other)
+    assert again.served == ((other, second), (other, first))
+    assert again.without(second).served == ((other, first),)
+
+
+def test_an_instance_is_new_unless_it_is_said_otherwise() -> None:
+    new = Instance(InstanceNumber(3), "s")
+    assert (new.arguments, new.owner, new.status, new.values, new.version) == ((), None, "on", (), 0)
+
+
+def test_sit_does_not_deliver_what_has_ended_or_is_withdrawn_to_a_second_reaction() -> None:
+    late = "(Delay[2] ; (SIT[s]<j> :; NIL))"
+    assert len(following(f"(SIT[s]<k> :; NIL) | {late}", "ASSERT[s]", until=3).store.run) == 2
+    assert len(following(f"(SIT[s]<k> :; (SUCCEED[s, k] ; NIL)) | {late}", "ASSERT[s]", until=3).store.run) == 1
+    above = "(SIT[r]<i> :; (ASSERT[s] ; NIL))"
+    reactor = f"{above} | (SIT[s]<k> :; NIL) | {late}"
+    assert len(following(reactor, "ASSERT[r]", until=3).store.run) == 3
+    assert len(following(reactor, "ASSERT[r]", "Delay[1] ; DRAIN[r]", until=3).store.run) == 2
+
+
+def test_time_the_windows_of_the_leaves_that_time_ends() -> None:
+    w = world()
+    for name, seconds, found in (("Delay", 2, (2.0, 2.0)), ("SUSPEND", 500, (0.5, 0.5)), ("Term", 2, (0.0, 2.0))):
+        assert window(Leaf(name, (seconds,)), w) == found
+    assert window(Leaf("timed"), w) == (1.0, 3.0)
+    assert window(Leaf("unknown"), w) == (0.0, 0.0)
+    for name in ("IN", "OUT", "SIT", "KILL", "NIL", "ASSERT", "E", "ADD", "POST"):
+        assert window(Leaf(name), w) == (float("inf"), float("inf"))
+    assert run("SUSPEND[500]") == STOPS
+    assert not list(steps(elapsed(begun("SUSPEND[500]", w=w), 0.4999, w), w))
+
+
+def test_drain_two_of_one_situation_end_in_one_step() -> None:
+    config = following("DRAIN[s] & DRAIN[s] & NIL", until=1)
+    assert [t for t in inside(config.root(1)) if isinstance(t, Ended)] == [Ended(True), Ended(True)]
+    assert [h.kind for h in config.store.inhibitions] == ["drain", "drain"]
+    assert config.store.drains == ()
+    busy = following(
+        "(SIT[s]<k> :; Delay[2]) | (ASSERT[s] # Delay[1])", "Delay[0.5] ; (DRAIN[s] & DRAIN[s] & NIL)", until=9
+    )
+    assert [h.kind for h in busy.store.inhibitions] == ["drain", "drain"]
