@@ -7,9 +7,9 @@ from itertools import combinations, product
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from planner_reactor.logic.allen import ALL, BASES, BIT, base_relation, relations
+from planner_reactor.logic.allen import BASES, BIT, base_relation, relations
 from planner_reactor.logic.network import Network
-from planner_reactor.logic.scenarios import holds_in, is_consistent, parts, pointisable, scenario, timeline
+from planner_reactor.logic.scenarios import holds_in, is_consistent, scenario, timeline
 
 SIZE = 4
 _SPANS = list(combinations(range(2 * SIZE), 2))
@@ -80,23 +80,6 @@ def test_path_consistency_alone_is_not_enough() -> None:
     assert network.consistent
     assert not brute_force(network)
     assert not is_consistent(network)
-
-
-def test_there_are_187_pointisable_sets() -> None:
-    assert len(pointisable()) == 187
-
-
-def test_every_set_is_the_union_of_its_parts() -> None:
-    for relation in (*range(1, ALL + 1, 37), ALL):
-        together = 0
-        for part in parts(relation):
-            assert part in pointisable()
-            together |= part
-        assert together == relation
-
-
-def test_disjoint_intervals_split_into_two_orders() -> None:
-    assert set(parts(relations(["b", "bi", "m", "mi"]))) == {relations(["b", "m"]), relations(["bi", "mi"])}
 
 
 def test_many_disjoint_intervals_fit_on_a_line() -> None:
