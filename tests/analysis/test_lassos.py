@@ -8,7 +8,8 @@ from itertools import combinations, pairwise
 import pytest
 
 from planner_reactor.analysis import lassos
-from planner_reactor.analysis.lassos import Justice, Lasso, accepted, components, product
+from planner_reactor.analysis.lassos import Lasso, accepted
+from planner_reactor.analysis.products import Justice, components, product
 from planner_reactor.analysis.systems import System
 from planner_reactor.analysis.tableau import Automaton, Edge, automaton
 from planner_reactor.analysis.temporal import FALSE, Here, Negation, always, eventually, holds

@@ -6,7 +6,8 @@ import random
 
 from msgspec.structs import replace
 
-from planner_reactor.analysis.lassos import Justice, accepted
+from planner_reactor.analysis.lassos import accepted
+from planner_reactor.analysis.products import Justice
 from planner_reactor.analysis.tableau import Automaton, automaton
 from planner_reactor.analysis.temporal import Formula, Until, always, eventually, holds
 from tests.analysis.random_runs import ATOMS, formula, round_trip, run

@@ -9,20 +9,14 @@ searched again (Emerson and Lei). The lasso is then the one with the fewest step
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable
 
 import msgspec
 
-from planner_reactor.analysis.systems import Move, System
+from planner_reactor.analysis.products import ANYHOW, Arc, Justice, Product, components, product, union
+from planner_reactor.analysis.systems import System
 from planner_reactor.analysis.tableau import Automaton
-from planner_reactor.errors import BudgetError
 from planner_reactor.rs.configurations import Label
-
-NODES = 2_000_000
-"""Pairs of a state of the system and one of the automaton that are visited at most."""
-
-ANYHOW: Label = ("", (), "anyhow", ())
-"""Stands for whatever follows when nothing is asked of it any more; fair runs go on from everywhere."""
 
 EFFORT = 300_000
 """Steps spent on making a lasso shorter; beyond, the shortest found so far is taken."""
@@ -41,88 +35,14 @@ class Lasso(msgspec.Struct, frozen=True):
     decided: bool = False
 
 
-class Justice(msgspec.Struct, frozen=True):
-    """Fairness as bits: each kind of step has one. `kind` numbers a label (-1: nothing is asked of it)."""
-
-    kind: Callable[[Label], int]
-    weak: int = 0
-    strong: int = 0
-
-
-class Arc(msgspec.Struct, frozen=True):
-    """A step of system and automaton together."""
-
-    after: int
-    move: Move
-    kept: int
-    taken: int
-
-
-class Product(msgspec.Struct, frozen=True):
-    """The part of system × automaton that can be reached; node 0 is first, `depth[n]` the steps to node n."""
-
-    nodes: Sequence[tuple[int, int]]
-    arcs: Sequence[tuple[Arc, ...]]
-    depth: Sequence[int]
-    before: Sequence[tuple[int, Move] | None]
-    possible: Sequence[int]  # the kinds of steps that are possible at each node
-
-
-def product(system: System, automaton: Automaton, justice: Justice) -> Product:
-    """System and automaton side by side, breadth first. `BudgetError` above `NODES` pairs."""
-    kinds: dict[Label, int] = {}
-    possible, taken = [], []
-    for moves in system.moves:
-        bits = [_bit(kinds.setdefault(m.label, justice.kind(m.label))) for m in moves]
-        taken.append(bits or [0])
-        possible.append(_union(bits))
-    nodes = [(0, 0)]
-    numbers = {nodes[0]: 0}
-    arcs: list[tuple[Arc, ...]] = []
-    depth, before = [0], [None]  # type: tuple[list[int], list[tuple[int, Move] | None]]
-    by_node: list[int] = []
-    for here, (state, duties) in enumerate(nodes):  # grows while it is read
-        found = []
-        if duties == automaton.free:
-            arcs.append((Arc(here, Move(ANYHOW, state, False, 0), automaton.all_kept, 0),))
-            by_node.append(0)
-            continue
-        by_node.append(possible[state] if state < len(possible) else 0)
-        for move, bit in zip(system.leaving(state), taken[state] if state < len(taken) else (), strict=False):
-            for edge in automaton.edges[duties]:
-                if not edge.reads(move.seen):
-                    continue
-                node = (move.after, edge.after)
-                if (number := numbers.setdefault(node, len(nodes))) == len(nodes):
-                    if number >= NODES:
-                        raise BudgetError("states", f"more than {NODES} states of program and property together")
-                    nodes.append(node)
-                    depth.append(depth[here] + 1)
-                    before.append((here, move))
-                found.append(Arc(number, move, edge.kept, bit))
-        arcs.append(tuple(found))
-    return Product(nodes, arcs, depth, before, by_node)
-
-
-def _bit(kind: int) -> int:
-    return 1 << kind if kind >= 0 else 0
-
-
-def _union(bits: Iterable[int]) -> int:
-    total = 0
-    for bit in bits:
-        total |= bit
-    return total
-
-
 def accepted(system: System, automaton: Automaton, justice: Justice) -> Lasso | None:
     """The shortest fair run of the system that the automaton accepts, or None if there is none."""
     both = product(system, automaton, justice)
-    components = list(_fair(both, automaton.all_kept, justice))
-    if not components:
+    fair = list(_fair(both, automaton.all_kept, justice))
+    if not fair:
         return None
     search = _Shortest(both, automaton.all_kept, justice)
-    for component in components:
+    for component in fair:
         search.within(component)
     assert search.best is not None
     return search.lasso()
@@ -136,62 +56,19 @@ def _fair(both: Product, all_kept: int, justice: Justice) -> Iterable[frozenset[
     while waiting:
         for component in components(both.arcs, waiting.pop()):
             inner = [arc for node in component for arc in both.arcs[node] if arc.after in component]
-            taken = _union(arc.taken for arc in inner)
-            if not inner or _union(arc.kept for arc in inner) != all_kept:
+            taken = union(arc.taken for arc in inner)
+            if not inner or union(arc.kept for arc in inner) != all_kept:
                 continue
             always = justice.weak
             for node in component:
                 always &= both.possible[node]
             if always & ~taken:
                 continue
-            missed = _union(both.possible[node] for node in component) & justice.strong & ~taken
+            missed = union(both.possible[node] for node in component) & justice.strong & ~taken
             if not missed:
                 yield component
             else:
                 waiting.append(frozenset(n for n in component if not both.possible[n] & missed))
-
-
-def components(arcs: Sequence[Sequence[Arc]], within: frozenset[int]) -> list[frozenset[int]]:
-    """The strongly connected components of a part of a graph (Tarjan), without recursion."""
-    found: list[frozenset[int]] = []
-    index: dict[int, int] = {}
-    low: dict[int, int] = {}
-    stack: list[int] = []
-    on_stack: set[int] = set()
-    for root in sorted(within):
-        if root in index:
-            continue
-        work = [(root, iter(arcs[root]))]
-        while work:
-            node, rest = work[-1]
-            if node not in index:
-                index[node] = low[node] = len(index)
-                stack.append(node)
-                on_stack.add(node)
-            for arc in rest:
-                if arc.after not in within:
-                    continue
-                if arc.after not in index:
-                    work.append((arc.after, iter(arcs[arc.after])))
-                    break
-                if arc.after in on_stack:
-                    low[node] = min(low[node], index[arc.after])
-            else:
-                work.pop()
-                if work:
-                    low[work[-1][0]] = min(low[work[-1][0]], low[node])
-                if low[node] == index[node]:
-                    found.append(_popped(stack, on_stack, node))
-    return found
-
-
-def _popped(stack: list[int], on_stack: set[int], node: int) -> frozenset[int]:
-    component = set()
-    while node not in component:
-        last = stack.pop()
-        on_stack.discard(last)
-        component.add(last)
-    return frozenset(component)
 
 
 # ------------------------------------------------------------------------------------------------- shortest lasso

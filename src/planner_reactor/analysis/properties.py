@@ -9,8 +9,9 @@ from __future__ import annotations
 import msgspec
 from msgspec.structs import replace
 
-from planner_reactor.analysis.lassos import Justice, Lasso, accepted
+from planner_reactor.analysis.lassos import Lasso, accepted
 from planner_reactor.analysis.notation import Fairness, Property
+from planner_reactor.analysis.products import Justice
 from planner_reactor.analysis.systems import System
 from planner_reactor.analysis.tableau import Automaton, Edge, automaton
 from planner_reactor.analysis.temporal import Negation
