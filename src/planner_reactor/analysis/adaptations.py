@@ -8,6 +8,7 @@ looked at once; what adds to nothing needs no look at all.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping
 from math import inf, isinf
 
@@ -19,7 +20,6 @@ from planner_reactor.errors import BudgetError, InputError
 from planner_reactor.rs.bounds import Bounds
 from planner_reactor.rs.configurations import Ending, Label, World
 from planner_reactor.rs.reactions import (
-    REACTION,
     Reaction,
     Surgery,
     drain_script,
@@ -193,8 +193,8 @@ def _verdict(found: Checked, bound: float | None, part: Sliced, surgery: Surgery
 
 def _meant(text: str, part: Sliced) -> str:
     """A sentence about the slice in the names of the reactor."""
-    words = text.replace(f"{REACTION}[", "KILL[").split(" ")
-    return " ".join(part.situations.get(word, word) for word in words)
+    text = re.sub(r"\bs\d+\b", lambda found: part.situations.get(found[0], found[0]), text)
+    return re.sub(r"\b(KILL|P)\[(\d+)\]", lambda found: f"{found[1]}[{part.labels.get(int(found[2]), found[2])}]", text)
 
 
 def _path(found: Counterexample, part: Sliced) -> tuple[Label, ...]:
