@@ -24,6 +24,10 @@ LIMIT = 5_000
 """States that one side of a comparison may have, unless a caller says otherwise."""
 
 
+HIDDEN: Label = ("hidden", (), "ok", ())
+"""What is left of a label that nobody outside sees."""
+
+
 class Behaviour(msgspec.Struct, frozen=True):
     """A finite labelled transition system: `moves[i]` are the (label, state) pairs of state i; 0 is the first."""
 
@@ -72,12 +76,16 @@ def same(left: Behaviour, right: Behaviour, *, hidden: Callable[[Label], bool] |
 
 
 def reduced(whole: Behaviour, *, hidden: Callable[[Label], bool] | None = None) -> Behaviour:
-    """The least transition system that is bisimilar: strongly, or branching if some labels are hidden."""
-    classes = classified(whole.moves, whole.ends, hidden)
+    """The least transition system that is bisimilar: strongly, or branching if some labels are `HIDDEN`."""
+    moves, unseen = whole.moves, None
+    if hidden is not None:
+        moves = tuple(tuple((HIDDEN if hidden(label) else label, s) for label, s in m) for m in moves)
+        unseen = HIDDEN.__eq__
+    classes = classified(moves, whole.ends, unseen)
     ends: list[Hashable] = [None] * (max(classes) + 1)
     for state, c in enumerate(classes):
         ends[c] = ends[c] if whole.ends[state] is None else whole.ends[state]
-    return Behaviour(tuple(map(tuple, quotient(whole.moves, classes, hidden))), tuple(ends))
+    return Behaviour(tuple(map(tuple, quotient(moves, classes, unseen))), tuple(ends))
 
 
 def classified(
