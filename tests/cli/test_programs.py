@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from planner_reactor.runtime import Scheduler
 from tests.cli.conftest import Call
 
 
@@ -215,3 +216,13 @@ def test_a_bomb_of_parentheses_is_refused_at_once(call: Call, place: Path) -> No
     (place / "bomb.rsl").write_text("A = " + "(" * 200_000)
     ran = call("check", "bomb.rsl", "--json")
     assert (ran.status, ran.object["ok"]) == (2, False)
+
+
+def test_run_can_be_held_against_the_semantics(call: Call, monkeypatch: pytest.MonkeyPatch) -> None:
+    ran = call("run", "cell.rsl", "Count[2]", "--conform", "--json")
+    assert (ran.status, ran.object["conformance"]["disagreement"]) == (0, None)
+    assert "steps held against the semantics, all allowed" in call("run", "cell.rsl", "Count[2]", "--conform").out
+    monkeypatch.setattr(Scheduler, "wait", lambda self, when, entry, was=Scheduler.wait: was(self, when + 0.1, entry))
+    ran = call("run", "cell.rsl", "Count[2]", "--conform")
+    assert ran.status == 1
+    assert "not allowed by the semantics" in ran.out

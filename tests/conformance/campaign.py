@@ -91,6 +91,7 @@ def summary(batches: Iterable[Batch]) -> str:
 def main(arguments: list[str]) -> int:
     parser = argparse.ArgumentParser(prog="python -m tests.conformance", description=__doc__)
     parser.add_argument("--programs", type=int, default=1_000_000, help="how many in all [default: 1000000]")
+    parser.add_argument("--first", type=int, default=0, help="the first seed, where several share the work")
     parser.add_argument("--results", type=Path, default=RESULTS, help=f"where they stand [default: {RESULTS}]")
     parser.add_argument("--summary", action="store_true", help="only say what was done so far")
     given = parser.parse_args(arguments)
@@ -99,7 +100,7 @@ def main(arguments: list[str]) -> int:
     if not given.summary:
         given.results.parent.mkdir(parents=True, exist_ok=True)
         coverage = Coverage()
-        first = max((b.first + b.programs for b in done), default=0)
+        first = max((b.first + b.programs for b in done if b.first >= given.first), default=given.first)
         with given.results.open("ab") as file:
             for start in range(first, given.programs, BATCH):
                 done.append(batch(start, coverage, digest))

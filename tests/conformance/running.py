@@ -99,14 +99,29 @@ def conforms(example: Example, seed: int, *, most: int = MOST_STEPS) -> Conforme
     follower = Follower(example.processes, world, most=MOST_CONFIGURATIONS)
     seen = 0.0
 
-    def observe(label: Label) -> None:
+    def passed() -> None:
         nonlocal seen
         follower.passed(round(scheduler.now - seen, 9))
         seen = scheduler.now
+
+    def observe(label: Label) -> None:
+        passed()
         follower.saw(label, executer.sites)
         if follower.steps >= most:
             raise Enough
 
+    def over(root: Root) -> None:
+        built_in.situations.root_ended(root)
+        if root in killed:
+            passed()
+            follower.kills(root.number)
+
+    def kill() -> None:
+        if roots[-1].outcome is None:
+            killed.add(roots[-1])
+            executer.kill(roots[-1])
+
+    killed: set[Root] = set()
     executer = Executer(
         example.program,
         scheduler=scheduler,
@@ -114,10 +129,12 @@ def conforms(example: Example, seed: int, *, most: int = MOST_STEPS) -> Conforme
         controls=built_in.controls,
         observer=observe,
         budgets=Budgets(slice=seed % 3 * 31 + 1),
-        on_end=built_in.situations.root_ended,
+        on_end=over,
     )
     built_in.attach(executer)
     roots = [executer.start_process(process) for process in example.processes]
+    if seed % 5 == 0:
+        scheduler.call_at(Chance.draw.choice([0.0, 0.5, 1.0, 2.0]), kill)
     try:
         executer.run(until=LONGEST)
     except Enough:

@@ -24,17 +24,33 @@ BUDGETS = ("zeno", "crowded")
 """What the trace records when a budget of the executer acts: the semantics knows no budgets."""
 
 
+LATENESS = 0.25
+"""Seconds by which a step may be late on the wall clock: the semantics knows no time that computing takes."""
+
+
 class Monitor:
-    """Follows one run; `disagreement` is None as long as it does what the semantics allows."""
+    """Follows one run; `disagreement` is None as long as it does what the semantics allows.
+
+    `lateness` is by how many seconds a step may come after its time: 0 on the virtual clock, `LATENESS` on the wall's.
+    """
 
     def __init__(
-        self, executer: Executer, program: Program, host: Host, trace: Trace, *, budget: int | None = None
+        self,
+        executer: Executer,
+        program: Program,
+        host: Host,
+        trace: Trace,
+        *,
+        lateness: float = 0.0,
+        budget: int | None = None,
     ) -> None:
         signatures = {**BUILT_IN, **host.signatures}
         world = World(program, signatures, host.functions, spawned=spawned_situations(program))
         self._follower = Follower((), world)
         self._scheduler = executer.scheduler
         self._budget = budget
+        self._lateness = lateness
+        self._behind = 0.0  # seconds by which the run is late
         self._seen = self._scheduler.now
         self.roots = 0
         self.disagreement: str | None = None
@@ -102,7 +118,7 @@ class Monitor:
             return
         now = self._scheduler.now
         try:
-            self._follower.passed(round(now - self._seen, 9))
+            self._pass(round(now - self._seen, 9))
             self._seen = now
             told(self._follower)
         except Disagreement as problem:
@@ -111,9 +127,22 @@ class Monitor:
             self.blind = str(problem)
 
 
-def attend(reactor: Reactor, *, budget: int | None = None) -> Monitor:
+    def _pass(self, seconds: float) -> None:
+        """As much of the time as may pass, passes; a run on the wall clock may be late with the rest."""
+        due = seconds + self._behind
+        if self._lateness and due > 0:
+            self._behind = max(0.0, due - self._follower.room())
+            due -= self._behind
+            if self._behind > self._lateness:
+                raise Disagreement(f"{self._behind:.3f} s late, at most {self._lateness} s are excused")
+        self._follower.passed(due)
+
+
+def attend(reactor: Reactor, *, lateness: float = 0.0, budget: int | None = None) -> Monitor:
     """Hold a reactor that has not begun yet against the semantics."""
-    return Monitor(reactor.executer, EQUATION_3, reactor.host, reactor.trace, budget=budget)
+    return Monitor(
+        reactor.executer, EQUATION_3, reactor.host, reactor.trace, lateness=lateness, budget=budget
+    )  # fmt: skip
 
 
 def written(label: Label) -> str:

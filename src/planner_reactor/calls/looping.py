@@ -14,7 +14,7 @@ import msgspec
 from msgspec.structs import replace
 
 from planner_reactor.calls.checking import must_fit
-from planner_reactor.calls.conforming import attend
+from planner_reactor.calls.conforming import LATENESS, attend
 from planner_reactor.calls.hosts import HostMaker, HostSource, find_host
 from planner_reactor.calls.inputs import names_in, one_of, read_text, seconds, whole
 from planner_reactor.calls.outputs import Outputs
@@ -132,7 +132,8 @@ def _run(text: str, file: str, host: HostSource, goal: str | None, given: _Optio
         outputs.attach(made.trace)
         if given.clock == "wall":
             made.trace.record("not_deterministic", because="the clock is the wall clock")
-        monitor = attend(made.reactor) if given.conform else None
+        late = LATENESS if given.clock == "wall" else 0.0
+        monitor = attend(made.reactor, lateness=late) if given.conform else None
         given.watch(made)
         made.run(until=given.until)
         # a host of our own is simulation alone; what another one would do twice we cannot know

@@ -11,7 +11,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from planner_reactor.calls.conforming import Monitor
+from planner_reactor.calls.conforming import LATENESS, Monitor
 from planner_reactor.calls.hosts import HostSource, find_host
 from planner_reactor.calls.inputs import one_of, read_text, seconds, whole
 from planner_reactor.calls.processes import called, checked, value
@@ -60,7 +60,8 @@ def run(
     arguments = [value(argument, process, call, used) for argument in call.arguments]
     if isinstance(time, _LonelyClock):
         time.stop = scheduler.stop
-    monitor = Monitor(executer, program, used, trace) if conform else None
+    late = LATENESS if clock == "wall" else 0.0
+    monitor = Monitor(executer, program, used, trace, lateness=late) if conform else None
     root = start(call, arguments)
     executer.run(until)
     return _came_to(root, executer) | ({"conformance": monitor.report()} if monitor is not None else {})
