@@ -95,7 +95,7 @@ def test_a_failure_of_its_own_is_told_without_a_traceback(call: Call, monkeypatc
     def broken(*_: object, **__: object) -> None:
         raise RuntimeError("the roof\nfell in")
 
-    monkeypatch.setattr("planner_reactor.calls.networks.read_network", broken)
+    monkeypatch.setattr("planner_reactor.calls.networks.read_statements", broken)
     assert call("network", "times.txt").refused("itself failed: RuntimeError: the roof (", "test_main.py")
 
 
@@ -103,7 +103,7 @@ def test_an_interruption_is_quiet(call: Call, monkeypatch: pytest.MonkeyPatch) -
     def interrupted(*_: object, **__: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("planner_reactor.calls.networks.read_network", interrupted)
+    monkeypatch.setattr("planner_reactor.calls.networks.read_statements", interrupted)
     ran = call("network", "times.txt")
     assert (ran.status, ran.out, ran.err) == (130, "", "")
 

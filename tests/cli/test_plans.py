@@ -108,11 +108,13 @@ def test_network_gives_closure_scenario_and_timeline(call: Call) -> None:
             {"first": "i2", "relations": ["b", "m"], "second": "i3"},
         ],
         "scenario": [
-            {"first": "i1", "relation": "o", "second": "i2"},
+            {"first": "i1", "relation": "b", "second": "i2"},
             {"first": "i1", "relation": "b", "second": "i3"},
             {"first": "i2", "relation": "b", "second": "i3"},
         ],
-        "timeline": {"i1": [0, 2], "i2": [1, 3], "i3": [4, 5]},
+        "timeline": {"i1": [0, 1], "i2": [2, 3], "i3": [4, 5]},
+        "metric": False,
+        "explanation": None,
     }
 
 
@@ -127,7 +129,24 @@ def test_an_inconsistent_network_exits_with_1(call: Call, place: Path) -> None:
     (place / "circle.txt").write_text("a b b1\nb1 b c\nc b a\n")
     ran = call("network", "circle.txt", "--json")
     assert (ran.status, ran.object["consistent"], ran.object["scenario"]) == (1, False, None)
-    assert call("network", "circle.txt").out.startswith("not consistent")
+    assert ran.object["explanation"] == [
+        {"line": 1, "text": "a b b1"}, {"line": 2, "text": "b1 b c"}, {"line": 3, "text": "c b a"},
+    ]  # fmt: skip
+    out = call("network", "circle.txt").out
+    assert out.startswith("not consistent")
+    assert "  line 2: b1 b c\n" in out
+
+
+def test_network_knows_durations_and_resources(call: Call, place: Path) -> None:
+    (place / "day.txt").write_text("a lasts 4000\nb lasts 4000\na d day\nb (s f d) day\na uses arm\nb uses arm\n")
+    (place / "short.txt").write_text((place / "day.txt").read_text() + "day lasts 0 .. 7000\n")
+    found = call("network", "day.txt", "--json").object
+    assert found["metric"]
+    assert found["timeline"]["a"][1] - found["timeline"]["a"][0] == 4000
+    ran = call("network", "short.txt")
+    assert ran.status == 1
+    assert "line 5: there is one arm, for nothing says otherwise" in ran.out
+    assert "line 7: day lasts 0 .. 7000" in ran.out
 
 
 def test_network_refuses_what_is_no_constraint_with_its_place(call: Call, place: Path) -> None:

@@ -66,12 +66,19 @@ def network(
 
 
 def _show_network(result: dict[str, Any]) -> None:
-    print("consistent" if result["consistent"] else "not consistent: no intervals lie to each other like this")
     if not result["consistent"]:
+        print("not consistent: no world holds all of this, and each of it is needed for that")
+        for said in result["explanation"]:
+            print(f"  line {said['line']}: {said['text']}")
         return
+    print("consistent")
     print("closure:")
     for edge in result["closure"]:
         print(f"  {edge['first']} ({' '.join(edge['relations'])}) {edge['second']}")
     print("scenario:")
     for edge in result["scenario"]:
         print(f"  {edge['first']} ({edge['relation']}) {edge['second']}")
+    if result["metric"]:
+        print("timeline, in milliseconds:")
+        for interval, (start, end) in result["timeline"].items():
+            print(f"  {interval} {start:g} .. {end:g}")

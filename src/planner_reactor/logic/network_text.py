@@ -1,42 +1,129 @@
-"""Reads a network of intervals from lines such as `i1 (b m o) i2`.
+"""Reads what is said of intervals, one statement a line:
 
-One constraint a line, several for one pair narrow each other; `i1 meets i2` and `i1 [m o] i2` mean the same
-as in a domain, commas between relations are allowed, `//` and `#` begin a comment. A contradiction is not
-an error of the text: the network that is returned then says that it is not consistent.
+    i1 (b m o) i2                                  how they lie; also [b, m, o], b, meets
+    i1 lasts 3000 .. 5000                          how long, in milliseconds; also 3000, or 3000 ..
+    start of i2 after end of i1 0 .. 2000          how far apart end points are; negative is before
+    i1 uses arm 1                                  what it takes of a resource; 1 if not said
+    resource arm 2                                 how much there is of it; 1 if not said
+
+Several statements for one pair narrow each other, `//` and `#` begin a comment. A contradiction is not an error of the
+text.
 """
 
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 
 from planner_reactor.errors import Diagnostic, DomainError, Place, nearest
 from planner_reactor.logic.allen import BASES, NAMED, relations
 from planner_reactor.logic.network import Network
+from planner_reactor.logic.problems import Apart, Capacity, Lasts, Lies, Statement, Uses
 
 LINES_LIMIT = 200_000
 _COMMENT = re.compile(r"(//|#).*$")
 _NAME = re.compile(r"\s*([^\s()\[\],]+)")
 _LIST = re.compile(r"\s*(?:\(([^()\[\]]*)\)|\[([^()\[\]]*)\])")
+_NUMBER = r"-?\d+(?:\.\d+)?"
+_SPAN = rf"\s+(?P<least>{_NUMBER})(?P<open>\s*\.\.\s*(?P<most>{_NUMBER})?)?\s*$"
+_WORD = r"[^\s()\[\],]+"
+_LASTS = re.compile(rf"\s*(?P<interval>{_WORD})\s+lasts" + _SPAN)
+_USES = re.compile(rf"\s*(?P<interval>{_WORD})\s+uses\s+(?P<resource>{_WORD})(?:\s+(?P<amount>\d+))?\s*$")
+_RESOURCE = re.compile(rf"\s*resource\s+(?P<resource>{_WORD})(?:\s+(?P<amount>\d+))?\s*$")
+_APART = re.compile(
+    rf"\s*(?P<end>start|end)\s+of\s+(?P<interval>{_WORD})"
+    rf"\s+after\s+(?P<from>start|end)\s+of\s+(?P<other>{_WORD})" + _SPAN
+)
+_METRIC = {
+    "lasts": "such as i1 lasts 3000 .. 5000",
+    "uses": "such as i1 uses arm 1",
+    "of": "such as start of i2 after end of i1 0 .. 2000",
+}
 
 
-def read_network(text: str, *, file: str = "<text>") -> Network:
-    """The network that the text describes, propagated; DomainError with all that is wrong with the text."""
+def read_statements(text: str, *, file: str = "<text>") -> tuple[Statement, ...]:
+    """What the text says, each statement with its line; DomainError with all that is wrong with the text.
+
+    A resource of which nothing says how much there is exists once.
+    """
     lines = text.splitlines()
     if len(lines) > LINES_LIMIT:
         place = Place(LINES_LIMIT + 1, 1, file)
         raise DomainError([Diagnostic(place, "error", "too-large", f"more than {LINES_LIMIT} lines")])
-    network = Network()
+    found: list[Statement] = []
     wrong: list[Diagnostic] = []
     for number, line in enumerate(lines, start=1):
-        if _COMMENT.sub("", line).strip():
+        said = _COMMENT.sub("", line)
+        if said.strip():
             try:
-                network.constrain(*_read_line(_COMMENT.sub("", line)))
+                found.append(_read_statement(said, Place(number, 1 + len(said) - len(said.lstrip()), file)))
             except _WrongError as error:
                 place = Place(number, error.column, file)
                 wrong.append(Diagnostic(place, "error", error.code, str(error), error.hint, line))
     if wrong:
         raise DomainError(wrong)
+    return (*found, *_single(found))
+
+
+def read_network(text: str, *, file: str = "<text>") -> Network:
+    """The network of the relations that the text states, propagated; DomainError as in `read_statements`."""
+    return network_of(read_statements(text, file=file))
+
+
+def network_of(statements: Sequence[Statement]) -> Network:
+    """The network of the relations among statements, propagated."""
+    network = Network()
+    for said in statements:
+        if isinstance(said, Lies):
+            network.constrain(said.first, said.second, said.relation)
     return network
+
+
+def _single(statements: Sequence[Statement]) -> list[Statement]:
+    known = {said.resource for said in statements if isinstance(said, Capacity)}
+    found: dict[object, Statement] = {}
+    for said in statements:
+        if isinstance(said, Uses) and said.resource not in known:
+            words = f"there is one {said.resource}, for nothing says otherwise"
+            found.setdefault(said.resource, Capacity(resource=said.resource, amount=1, words=words, place=said.place))
+    return list(found.values())
+
+
+def _read_statement(line: str, place: Place) -> Statement:
+    words = " ".join(line.split())
+    if lasts := _LASTS.match(line):
+        least, most = _span(lasts)
+        if least < 0:
+            raise _WrongError(lasts.start("least") + 1, "empty-duration", "a negative duration", "expected 0 or more")
+        return Lasts(interval=lasts["interval"], least=least, most=most, words=words, place=place)
+    if apart := _APART.match(line):
+        least, most = _span(apart)
+        first, second = (apart["other"], int(apart["from"] == "end")), (apart["interval"], int(apart["end"] == "end"))
+        return Apart(first=first, second=second, least=least, most=most, words=words, place=place)
+    if uses := _USES.match(line):
+        interval, resource = uses["interval"], uses["resource"]
+        return Uses(interval=interval, resource=resource, amount=_amount(uses), words=words, place=place)
+    if there := _RESOURCE.match(line):
+        return Capacity(resource=there["resource"], amount=_amount(there), words=words, place=place)
+    first_name, second_name, relation = _read_line(line)
+    return Lies(first=first_name, relation=relation, second=second_name, words=words, place=place)
+
+
+def _span(found: re.Match[str]) -> tuple[float, float | None]:
+    least = float(found["least"])
+    most = least if found["open"] is None else None if found["most"] is None else float(found["most"])
+    if most is not None and most < least:
+        message = f"{least:g} .. {most:g} holds nothing"
+        raise _WrongError(found.start("least") + 1, "empty-duration", message, "expected the least first")
+    return least, most
+
+
+def _amount(found: re.Match[str]) -> int:
+    if found["amount"] is None:
+        return 1
+    if int(found["amount"]) == 0:
+        raise _WrongError(found.start("amount") + 1, "not-whole", "0 of a resource", "expected a whole number above 0")
+    return int(found["amount"])
 
 
 class _WrongError(Exception):
@@ -49,6 +136,10 @@ def _read_line(line: str) -> tuple[str, str, int]:
     first = _NAME.match(line)
     if not first:
         raise _WrongError(1 + len(line) - len(line.lstrip()), "expected-interval", *_EXPECTED)
+    word = _NAME.match(line, first.end())
+    if word and word[1] in _METRIC:
+        message, hint = f"what {word[1]} says cannot be read", f"expected a line {_METRIC[word[1]]}"
+        raise _WrongError(word.start(1) + 1, "unexpected", message, hint)
     relation, end = _read_relation(line, first.end())
     second = _NAME.match(line, end)
     if not second:

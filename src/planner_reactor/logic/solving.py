@@ -53,6 +53,16 @@ def solve(statements: Sequence[Statement], intervals: Iterable[Interval] = (), *
     return _Search(statements, intervals, limit).run()
 
 
+def closure(statements: Sequence[Statement]) -> list[tuple[Interval, int, Interval]] | None:
+    """What propagation alone knows of pairs of intervals, from relations and durations together; None if they
+    contradict each other at once.
+    """
+    search = _Search(statements, (), GUESSES, complete=True)
+    if not search.propagate():
+        return None
+    return [(search.names[a], known, search.names[b]) for a, b, known in sorted(search.linked.network.known())]
+
+
 @dataclass(slots=True)
 class _Split:
     """A choice between alternatives of which one must be so; `core` are the reasons of those that failed."""
@@ -71,7 +81,9 @@ class _Resource:
 
 
 class _Search:
-    def __init__(self, statements: Sequence[Statement], intervals: Iterable[Interval], limit: int) -> None:
+    def __init__(
+        self, statements: Sequence[Statement], intervals: Iterable[Interval], limit: int, *, complete: bool = False
+    ) -> None:
         self.statements = statements
         self.names = tuple(dict.fromkeys((*intervals_of(statements), *intervals)))
         self.number = {name: n for n, name in enumerate(self.names)}
@@ -83,14 +95,19 @@ class _Search:
             if isinstance(said, Lies) and said.first != said.second
         ]
         self.resources = self._resources()
-        self.linked = Linked(self._chords(), TimeNetwork() if self.metric else None)
+        chords = self._chords(complete or self.metric or bool(self.resources))
+        self.linked = Linked(chords, TimeNetwork() if self.metric else None)
         self.splits: list[_Split] = []
         self.weights: dict[tuple[int, int], int] = {}
         self.liked = list(range(2 * len(self.names)))
         self.limit, self.guesses, self.worlds = limit, 0, 0
 
+    def propagate(self) -> bool:
+        """State everything; False if that contradicts itself at once."""
+        return all(self._state(said, 1 << n) for n, said in enumerate(self.statements)) and self.linked.settle()
+
     def run(self) -> Answer:
-        if not all(self._state(said, 1 << n) for n, said in enumerate(self.statements)) or not self.linked.settle():
+        if not self.propagate():
             return self._contradiction(self.linked.conflict)
         wrong: list[tuple[int, int]] = []
         while True:
@@ -116,9 +133,9 @@ class _Search:
 
     # ------------------------------------------------------------------------------------------ what is stated
 
-    def _chords(self) -> Chordal:
+    def _chords(self, complete: bool) -> Chordal:
         size = len(self.names)
-        if self.metric or self.resources:
+        if complete:
             return Chordal(combinations(range(size), 2), size)
         return Chordal(triangulated(((a, b) for a, b, _ in self.lies), size), size)
 
