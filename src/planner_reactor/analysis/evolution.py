@@ -21,7 +21,7 @@ from msgspec.structs import replace
 
 from planner_reactor.analysis.conditions import Atom, Condition, Event, constraints_of, mentioned, shortened, weaker
 from planner_reactor.analysis.explore import canonical
-from planner_reactor.analysis.renaming import renamed
+from planner_reactor.analysis.renaming import renamed, unknowns_of
 from planner_reactor.rs.configurations import Config, Ending, Label, World
 from planner_reactor.rs.constraints import consistent, projected
 from planner_reactor.rs.evolves import settle, started
@@ -91,21 +91,23 @@ def reachable(
     A path is followed no further where its configuration and what is known have been met before.
     """
     found: list[tuple[tuple[Condition, ...], State]] = [((), start)]
-    seen = {_timeless(start)}
+    seen = {_apart(start)}
     for path, state in found:  # grows while it is read
         for evolution in poss(state, world, open_ports=open_ports):
             if len(found) > limit:
                 return found, False
-            key = _timeless(evolution.after)
+            key = _apart(evolution.after)
             if key not in seen:
                 seen.add(key)
                 found.append(((*path, evolution.condition), evolution.after))
     return found, True
 
 
-def _timeless(state: State) -> tuple[Config, tuple[Constraint, ...]]:
-    """What tells states apart: not the names of fresh unknowns."""
-    return renamed((canonical(state.config), tuple(sorted(state.known, key=repr))))
+def _apart(state: State) -> tuple[Config, tuple[Constraint, ...]]:
+    """What tells states apart: not the names of fresh unknowns, nor what was known of those that are gone."""
+    live = {*unknowns_of(state.config), *(u for u in mentioned(state.known) if u.serial <= 0)}
+    known = projected(state.known, live)
+    return renamed((canonical(state.config), tuple(sorted(known, key=repr))))
 
 
 def extended_abort(
