@@ -1,7 +1,8 @@
 """`python -m tests.mutants`: run every mutant, tell the survivors, write the table.
 
 Results are appended to out/mutants.jsonl as they come; a run that was interrupted goes on where it stopped, for the
-modules and tests that have not changed since. A mutant that was killed before meets the same test first.
+modules and tests that have not changed since. A mutant first meets the test that killed it
+before, or that killed its neighbour.
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ def main() -> None:
     arguments = argparse.ArgumentParser(prog="python -m tests.mutants", description=__doc__)
     arguments.add_argument("--fresh", action="store_true", help="forget earlier results")
     arguments.add_argument("--module", default="", help="only the mutants of this module")
+    arguments.add_argument("--new", action="store_true", help="only mutants that no earlier run has judged")
     given = arguments.parse_args()
     os.environ.setdefault("PYTHONHASHSEED", "0")
     OUT.parent.mkdir(exist_ok=True)
@@ -28,11 +30,15 @@ def main() -> None:
     code.warm(TESTS)
     found = [m for m in mutants() if not given.module or m.module == given.module]
     results = []
+    killers: dict[str, str] = {}
     with OUT.open("w" if given.fresh else "a", encoding="utf-8") as log:
         for mutant in found:
             earlier = known.get(mutant.key)
-            if earlier is None or earlier["source"] != mutant.source or earlier["fate"] == "survived":
-                earlier = _judged(code, mutant, (earlier or {}).get("by", ""))
+            again = earlier is not None and earlier["fate"] == "survived" and not given.new
+            if earlier is None or earlier["source"] != mutant.source or again:
+                likely = (earlier or {}).get("by") or killers.get(mutant.mutation.function, "")
+                earlier = _judged(code, mutant, likely)
+                killers[mutant.mutation.function] = earlier["by"] or likely
                 log.write(json.dumps(earlier, ensure_ascii=False) + "\n")
                 log.flush()
             results.append(earlier)

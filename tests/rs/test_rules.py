@@ -28,6 +28,7 @@ from planner_reactor.rs.states import (
     parts_of,
 )
 from planner_reactor.rs.store import Instance, Store
+from planner_reactor.rs.vocabulary import BUILT_IN, Signature
 from tests.rs.test_evolves import STOPS, run, world
 
 SERVED = "SIT[s]<k> :; (Delay[5] ; SUCCEED[s, k])"
@@ -697,3 +698,62 @@ def test_drain_two_of_one_situation_end_in_one_step() -> None:
         "(SIT[s]<k> :; Delay[2]) | (ASSERT[s] # Delay[1])", "Delay[0.5] ; (DRAIN[s] & DRAIN[s] & NIL)", until=9
     )
     assert [h.kind for h in busy.store.inhibitions] == ["drain", "drain"]
+
+
+def test_time_a_basic_process_with_a_wrong_argument_aborts_at_once_and_says_why() -> None:
+    signatures = {
+        "act": Signature("act", ("number", "symbol", "any"), window=(1.0, 2.0)),
+        "soon": Signature("soon", ("number",)),
+    }
+    w = World(signatures={**BUILT_IN, **signatures}, endings=lambda name, arguments: [(True, ())])
+    for arguments, found in (((1, "p", 7), (1.0, 2.0)), (("p", "p", 7), (0.0, 0.0)), ((1, 2, 7), (0.0, 0.0)),
+                             (("p", 2, 7), (0.0, 0.0)), ((), (1.0, 2.0)), ((1,), (1.0, 2.0))):  # fmt: skip
+        assert window(Leaf("act", arguments), w) == found
+    assert window(Leaf("soon", (1,)), w) == (0.0, 0.0)
+    (wrong,) = steps(begun("act[p, p, 7]", w=w), w)
+    assert (wrong.label, wrong.urgent) == (("act", ("p", "p", 7), "ab", ()), True)
+    end = wrong.after.root(1)
+    assert isinstance(end, Ended)
+    assert end.cause == "error"
+    assert not list(steps(begun("act[1, p, 7]", w=w), w))
+    (right,) = steps(elapsed(begun("act[1, p, 7]", w=w), 1.0, w), w)
+    assert (right.label[2], right.urgent) == ("ok", False)
+
+
+def test_renew_a_reaction_that_was_posted_later_serves_situations_that_were_never_renewed() -> None:
+    program = "P[4] = SIT[s]<k> :; SUCCEED[s, k]"
+    reactor = "ADD<m> :: (E[m] # P[m])"
+    assert run(reactor, "RENEW[t] ; POST[4]", "Delay[1] ; ASSERT[s]", program=program) == STOPS
+    assert run(reactor, "Delay[1] ; RENEW[s] ; POST[4]", "ASSERT[s]", program=program) == {"runs"}
+    assert run(reactor, "RENEW[s] ; POST[4]", "Delay[1] ; ASSERT[s]", program=program) == STOPS
+    assert run(reactor, "POST[4] ; RETIRE[4] ; RENEW[s]", "Delay[1] ; ASSERT[s]", program=program) == {"runs"}
+    assert run(reactor, "POST[4] ; RETIRE[4] ; RENEW[t]", "Delay[1] ; ASSERT[s]", program=program) == STOPS
+    assert run(reactor, "POST[4] ; RETIRE[4] ; RENEW[s]", "ASSERT[s]", program=program) >= STOPS
+
+
+def test_renew_what_the_store_knows_of_versions() -> None:
+    store = Store().renewed("t").renewed("s").renewed("s")
+    assert store.versions == (("s", 2), ("t", 1))
+    assert (store.version("s"), store.version("t"), store.version("r")) == (2, 1, 0)
+    store = store.posted(4).posted(5).posted(4)
+    assert store.born == ((5, store.versions), (4, store.versions))
+    assert Store().posted(4).born == ()
+    retired = store.retire(4).renewed("s").retire(4).retire(5)
+    assert retired.retired[0] == (4, (("s", 2), ("t", 1)))
+    assert [entry[0] for entry in retired.retired] == [4, 5]
+    kept = retired.guarded_by([5])
+    assert ([e[0] for e in kept.born], [e[0] for e in kept.retired]) == ([5], [5])
+
+
+def test_waitold_waits_for_older_instances_of_its_situation() -> None:
+    store, _ = Store().asserted("s", (), None)
+    assert not store.older("s", 0)
+    assert store.older("s", 1)
+    assert not store.older("t", 1)
+    assert store.renewed("s").asserted("s", (), None)[0].instances[1].version == 1
+
+
+def test_renew_of_a_disabled_situation_gives_up_what_is_on() -> None:
+    serving = "(SIT[s]<k> :; NIL) | (SIT[t]<j> :; NIL) | ASSERT[s] | ASSERT[t]"
+    config = following(serving, "Delay[1] ; DISABLE[s, A] ; RENEW[s] ; RENEW[t]", until=2)
+    assert [(i.situation, i.withdrawn) for i in config.store.instances] == [("s", True), ("t", False)]
