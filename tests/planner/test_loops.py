@@ -192,7 +192,7 @@ def test_what_is_refused_again_and_again_is_given_up_and_said() -> None:
             break
         for adaptation in step.adaptations:
             planner.perceive(perception("adaptation_refused", str(adaptation.id), cause="text"))
-    assert planner.impossible == {"Kitting": "the reactor refused it 5 times (text)"}
+    assert planner.impossible == {"Kitting": "it was refused 5 times (text)"}
     assert not planner.ideal
 
 

@@ -105,7 +105,7 @@ class Verifier:
         """
         if (wrong := upside_down(before, surgery)) is not None:
             return Verdict(local=False, bound_s=bound, why=f"{wrong[1]} would be held up at {wrong[0]}, drained first")
-        states = 0
+        states, verdict = 0, Verdict(bound_s=bound)
         for single in apart(before, coming, surgery):
             part = sliced(before, [r for r in coming if r.label in single.adds], single)
             if (found := self.seen.get(part.slice)) is None:
@@ -115,8 +115,8 @@ class Verifier:
             if not verdict.holds:
                 return verdict
         serves = {r.label: r for r in before}
-        loose = [n for n in surgery.kills if serves[n].situation not in surgery.held and not serves[n].monitors]
-        if loose:
+        at_rest = {n for n, r in serves.items() if r.situation in surgery.held or r.monitors}
+        if loose := [n for n in surgery.kills if n not in at_rest]:
             return Verdict(safe=False, bound_s=bound, why=f"P[{loose[0]}] is killed, and what it serves is not held")
         return verdict
 

@@ -236,10 +236,13 @@ class Reducer:
             segment.urgency = min(segment.urgency, urgency)
             self._agenda.push(segment)
 
-    def mark_outdated(self, urgency: int) -> None:
-        """Everything has to be planned again that rests on what is relaxed now, or missed what is not."""
+    def mark_outdated(self, urgency: int, *, given_up: bool = True) -> None:
+        """Everything has to be planned again that rests on what is relaxed now, or missed what is not; also what was
+        `given_up` because it was refused too often.
+        """
         relaxed = self.assuming.beliefs.relaxed
-        self.mark([s for s in self.model if s.refinement and not s.refinement.serves(relaxed)], urgency)
+        outdated = [s for s in self.model if s.refinement and not s.refinement.serves(relaxed)]
+        self.mark([s for s in outdated if given_up or s.refusals < MOST_REFUSALS], urgency)
 
     def raise_urgency(self, name: str, urgency: int) -> Segment | None:
         """The reactor has to do with this situation now."""
@@ -287,8 +290,9 @@ class Reducer:
         self.mark([segment], QUIESCENT)
         segment.refusals += bool(why)
         if segment.refusals >= MOST_REFUSALS:
-            segment.impossible = f"the reactor refused it {segment.refusals} times ({why})"
+            segment.impossible = f"it was refused {segment.refusals} times ({why})"
         restored = [s for s, _ in flight.before]
         below = [c.situation for s in self.model for c in s.children if s.situation in restored]
-        self.mark(self.model.renew_contexts([*restored, *below]), QUIESCENT)
-        self.mark_outdated(QUIESCENT)
+        renewed = self.model.renew_contexts([*restored, *below])
+        self.mark([s for s in renewed if s.refusals < MOST_REFUSALS], QUIESCENT)
+        self.mark_outdated(QUIESCENT, given_up=False)
