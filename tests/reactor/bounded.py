@@ -9,7 +9,8 @@ import msgspec
 
 from planner_reactor.link.channels import PerceptionChannel
 from planner_reactor.link.messages import Adaptation, Change
-from planner_reactor.reactor.reactor import MARGIN, Reactor
+from planner_reactor.reactor.reactor import Reactor
+from planner_reactor.reactor.structure import MARGIN
 from planner_reactor.runtime import Aborted, Host, Scheduler, VirtualClock
 from planner_reactor.trace import Trace
 
