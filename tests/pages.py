@@ -18,6 +18,7 @@ from planner_reactor.cli.later import LATER
 from planner_reactor.logic import itl_syntax
 from planner_reactor.rs import grammar, states
 from tests.laws.telling import laws, non_laws
+from tests.mutants.telling import mutants_table
 from tests.transcripts import examples
 
 ROOT = Path(__file__).parent.parent
@@ -152,6 +153,7 @@ MADE: Mapping[str, Callable[[], str]] = {
     "later": _later,
     "property_words": _property_words,
     "laws": laws,
+    "mutants": mutants_table,
     "non_laws": non_laws,
     "runtime_terms": lambda: _indented_in(states),
 }
