@@ -44,6 +44,7 @@ def _of(module: str) -> Run:
 EXPERIMENTS: dict[str, Experiment] = {
     "papers": Experiment("the papers' run on their clock and on ours: figures, tables, one page", _of("papers")),
     "faults": Experiment("random faults, seed after seed, with relaxing and without", _of("fault_trials")),
+    "load": Experiment("how long an adaptation waits while instances overlap, in each mode", _of("load")),
     "startup": Experiment("how long the planner thinks: to act, to be ideal, to relax", _of("startup")),
     "ideal": Experiment("are the planner's reactors ω-ideal? every run, where assumptions hold and where they fail",
                         _of("ideal_reactors")),
