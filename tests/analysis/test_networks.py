@@ -6,6 +6,7 @@ import os
 import re
 from collections.abc import Hashable, Sequence
 from functools import cache
+from pathlib import Path
 
 import pytest
 
@@ -200,3 +201,12 @@ def test_spin_agrees_on_safe_adaptations_side_by_side(coupled: bool) -> None:
     found = spin.searched(promela(automata), fast=False, expected=ours.states)
     assert (found.states, found.deadlocks) == (ours.states, ours.deadlocks)
     assert less.states <= spin.searched(promela(automata), fast=False, reduction=True, expected=ours.states).states
+
+
+@pytest.mark.parametrize(("k", "coupled"), [(2, False), (2, True), (3, False), (3, True), (4, False)])
+def test_the_published_models_are_what_is_exported(k: int, coupled: bool) -> None:
+    name = f"copies_{k}{'_coupled' * coupled}"
+    models = Path(__file__).parents[2] / "benchmarks" / "models"
+    assert (models / f"{name}.rsl").read_text() == copies.text(k, coupled=coupled)
+    automata = compiled(networked(*copies.begun(k, coupled=coupled), limit=LIMIT))
+    assert (models / f"{name}.pml").read_text() == promela(automata, title=name)
