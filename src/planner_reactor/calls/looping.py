@@ -44,7 +44,8 @@ class LoopOptions(TypedDict, total=False):
     `trays`: how many kits (or whatever the host counts) to complete; `seed`; `kit`: the file of another kit;
     `faults`: a file of faults; `until`: seconds; `cell`: "events"; `clock`: "virtual" or "wall"; `planner`:
     "inline"; `planner_time`: seconds charged for each step of the planner, "measured" or "papers"; `mode`: "drain",
-    "wait" or "versions"; `relax`: "all", "none", or assumptions; `trace`: a file `*.jsonl` to write; `figures`: a directory to draw into;
+    "wait" or "versions"; `verify`: verify every adaptation before it is issued; `relax`: "all", "none", or assumptions;
+    `trace`: a file `*.jsonl` to write; `figures`: a directory to draw into;
     `conform`: hold every step against the semantics (`conforming`); `watch`: is given the `Loop` before it runs;
     `told`: is given each warning, a line.
     """
@@ -59,6 +60,7 @@ class LoopOptions(TypedDict, total=False):
     planner: str
     planner_time: float | str
     mode: str
+    verify: bool
     relax: str | tuple[str, ...]
     trace: str | Path | None
     figures: str | Path | None
@@ -80,6 +82,7 @@ class _Options(msgspec.Struct, frozen=True, kw_only=True):
     planner: str = "inline"
     planner_time: float | str = PER_STEP
     mode: str = "drain"
+    verify: bool = True
     relax: str | tuple[str, ...] = "all"
     trace: str | Path | None = None
     figures: str | Path | None = None
@@ -152,7 +155,10 @@ def _prepared(
     if kit_spec is not None:
         text = with_kit(text, kit_spec)
     fault_text = read_text(given.faults) if given.faults is not None else None
-    planner = Planner(read_domain(text, file=file), goal=goal, relax=_relaxed(given.relax), mode=cast(Mode, given.mode))
+    planner = Planner(
+        read_domain(text, file=file), goal=goal, relax=_relaxed(given.relax), mode=cast(Mode, given.mode),
+        verify=given.verify,
+    )  # fmt: skip
     maker = find_host(host)
     _expect(maker, given, kit_spec)
 
@@ -223,6 +229,8 @@ def _came_to(made: Loop, faults: FaultSchedule | None, given: _Options) -> dict[
     unstruck = faults.unstruck() if faults is not None else ()
     for fault in unstruck:
         given.told(f"the fault {fault.kind}, due at {fault.at:g} s, had not struck by {made.costs.simulated:g} s")
+    for why in made.planner.withheld.values():
+        given.told(f"an adaptation was not issued: {why}")
     for situation, why in made.planner.impossible.items():
         given.told(f"no plan for {situation}: {why}")
     return {

@@ -51,6 +51,9 @@ PlannerTime: TypeAlias = Annotated[
 ModeName: TypeAlias = Annotated[
     str, typer.Option("--mode", metavar="wait|drain|versions", help="How a running reactor is adapted.")
 ]
+Verified: TypeAlias = Annotated[
+    bool, typer.Option("--verify/--no-verify", help="Verify every adaptation before it is issued.")
+]
 Relax: TypeAlias = Annotated[
     str, typer.Option("--relax", metavar="all|none|AQ,AS,...", help="Which assumptions may be relaxed.")
 ]
