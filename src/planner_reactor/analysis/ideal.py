@@ -71,7 +71,7 @@ def idle(
 
 class Partial(msgspec.Struct, frozen=True):
     """R^ω_j on the way from ω to ω': its text, and e_j, what is not finished yet, as the assumptions that these parts
-    still rest on (`AQ(cap)`).
+    still rest on (`A(x)`: for x only).
     """
 
     text: str

@@ -1,4 +1,4 @@
-"""Labels as text: `SIT[Kit]<1>`, `Find[cap] aborts`, `p!3`, `2 s pass`."""
+"""Labels as text: `SIT[job]<1>`, `Find[bolt] aborts`, `p!3`, `2 s pass`."""
 
 from __future__ import annotations
 

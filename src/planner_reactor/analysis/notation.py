@@ -1,4 +1,4 @@
-"""The notation of properties: `always (asserted Kit -> eventually succeeded Kit) under weak fairness`.
+"""The notation of properties: `always (asserted job -> eventually succeeded job) under weak fairness`.
 
     property  ::=  formula [under (weak | strong) fairness [of NAME, …]]
     formula   ::=  formula <-> formula  |  formula -> formula  |  formula leads to formula
