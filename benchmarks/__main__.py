@@ -17,7 +17,9 @@ from types import ModuleType
 from typing import Any
 
 import bench_executer as ours
+import bench_network
 import planner_rows
+import transition_rows
 from measuring import Work, rates
 
 PEERS = ("simpy", "asyncio", "trio", "gtpyhop", "unified")
@@ -29,11 +31,16 @@ def main() -> int:
     """Run everything and print it."""
     parser = argparse.ArgumentParser(prog="benchmarks", description=__doc__)
     parser.add_argument("--peers", action="store_true", help="also measure SimPy, asyncio and trio")
-    parser.add_argument("--only", choices=("executer", "planner"), help="measure one part")
+    parser.add_argument("--only", choices=("executer", "planner", "transitions", "network"), help="measure one part")
     parser.add_argument("--json", action="store_true", help="print one JSON object")
     given = parser.parse_args()
     peers = installed() if given.peers else {}
-    parts = {"executer": (throughput, reactions, costs), "planner": (planner_rows.planning,)}
+    parts = {
+        "executer": (throughput, reactions, costs),
+        "planner": (planner_rows.planning,),
+        "transitions": (transition_rows.systems,),
+    }
+    parts["network"] = (bench_network.rows,)
     rows = [row for name, part in parts.items() if given.only in (None, name) for do in part for row in do(peers)]
     found = {
         "python": platform.python_version(),
