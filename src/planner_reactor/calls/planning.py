@@ -11,6 +11,8 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
+import msgspec
+
 from planner_reactor.calls.inputs import names_in, read_text, unknown, whole
 from planner_reactor.link.messages import Adaptation, Perception, PerceptionKind
 from planner_reactor.logic.domain import Domain
@@ -24,14 +26,21 @@ MONITORS = ("ASSUMONITOR", "HOLDMONITOR")
 
 
 def plan(
-    file: str | Path, *, without: str | Iterable[str] = (), steps: int | None = None, goal: str | None = None
+    file: str | Path,
+    *,
+    without: str | Iterable[str] = (),
+    steps: int | None = None,
+    goal: str | None = None,
+    explain: bool = False,
 ) -> dict[str, Any]:
     """Plan for a goal of a domain `*.itl` (the first, if none is named).
 
     `without`: assumptions to do without, such as "AQ,AM"; `steps`: stop after so many segments. Returns `segments`
     (each with `situation`, `purpose`, `text`, `adds`, `kills`, `assumptions`, `monitors`, `perceptions`, `stubs` and
     `issued_s`), `issued_s` (processor seconds until the first was issued, None if there is none), `ideal` (is
-    nothing left to add?), `impossible` (situations without a plan, and why) and `warnings`.
+    nothing left to add?), `impossible` (situations without a plan, and why) and `warnings`. With `explain` each segment
+    has `why` too (what set it off; for each situation what is wanted, which action is there for what, and what rests on
+    which assumption) and `explained`, the same to be read.
     """
     if steps is not None:
         whole("steps", steps, 1)
@@ -49,11 +58,15 @@ def plan(
     for name in relaxed:
         perceive("assumption_failure", name)
     segments: list[dict[str, Any]] = []
+    ids: list[int] = []
     while (steps is None or len(segments) < steps) and (step := planner.step()) is not None:
         for adaptation in step.adaptations:
             issued = time.process_time() - began
             segments.append({**segment(adaptation), "situation": step.situation, "issued_s": issued})
+            ids.append(adaptation.id)
             perceive("adaptation_applied", str(adaptation.id))
+    if explain:
+        segments = [{**said, **_why(planner, number)} for said, number in zip(segments, ids, strict=True)]
     return {
         "segments": segments[:steps],
         "issued_s": segments[0]["issued_s"] if segments else None,
@@ -61,6 +74,11 @@ def plan(
         "impossible": dict(planner.impossible),
         "warnings": list(planner.warnings),
     }
+
+
+def _why(planner: Planner, adaptation: int) -> dict[str, Any]:
+    explanation = planner.explain(adaptation)
+    return {"why": msgspec.to_builtins(explanation), "explained": str(explanation)}
 
 
 def segment(adaptation: Adaptation) -> dict[str, Any]:

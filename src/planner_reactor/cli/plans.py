@@ -12,7 +12,7 @@ from planner_reactor.cli.application import command
 from planner_reactor.cli.printing import print_json, reserved_output, say
 
 
-@command("kitting.itl", "kitting.itl --without AQ,AM --steps 2 --json")
+@command("kitting.itl", "kitting.itl --without AQ,AM --steps 2 --json", "kitting.itl --steps 1 --explain")
 def plan(
     file: Annotated[Path, typer.Argument(metavar="FILE.itl", help="The planning domain.", show_default=False)],
     without: Annotated[str, typer.Option("--without", metavar="AQ,...", help="Assumptions to do without.")] = "",
@@ -20,13 +20,14 @@ def plan(
         int | None, typer.Option("--steps", metavar="K", help="Stop after so many segments [default: all].")
     ] = None,
     goal: options.Goal = None,
+    explain: Annotated[bool, typer.Option("--explain", help="Say why each segment is there.")] = False,
     as_json: options.Json = False,
 ) -> int:
     """Show the segments of a reactor as the planner would send them."""
     from planner_reactor.calls import planning
 
     with reserved_output():
-        result = planning.plan(file, without=without, steps=steps, goal=goal)
+        result = planning.plan(file, without=without, steps=steps, goal=goal, explain=explain)
     for warning in result["warnings"]:
         say(f"warning: {warning}")
     for situation, why in result["impossible"].items():
@@ -44,6 +45,8 @@ def _show_plan(result: dict[str, Any]) -> None:
         for name in ("assumptions", "stubs", "perceptions", "kills"):
             if segment[name]:
                 print(f"// {name}: {', '.join(map(str, segment[name]))}")
+        for line in segment.get("explained", "").splitlines()[1:]:
+            print(f"//{line}")
         print(segment["text"])
     print(f"// {len(result['segments'])} segments, {'complete' if result['ideal'] else 'not complete'}")
 

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+from planner_reactor.planner.beliefs import Beliefs
 from planner_reactor.planner.memory import Key
 from planner_reactor.planner.model import Drafted, Segment
-from planner_reactor.planner.situations import Refinement, Situation
+from planner_reactor.planner.situations import Context, Refinement, Situation
 from planner_reactor.planner.thinking import Work
 
 
@@ -26,6 +27,7 @@ class Draft:
     avoided: dict[Situation, frozenset[str]] = field(default_factory=dict)
     settled: set[Situation] = field(default_factory=set)
     left: set[Situation] = field(default_factory=set)
+    contexts: dict[Situation, tuple[Context, Beliefs]] = field(default_factory=dict)  # what refinements depended on
     thought: tuple[Key, Work[Refinement]] | None = None  # what is being worked out
 
     def __post_init__(self) -> None:

@@ -191,6 +191,7 @@ class Issuer:
         self.model.put(segment, refinement)
         if refinement is None:
             text = self.sheets.stub(situation, self.stub_ms)
+            segment.because = self.model.why(situation, draft.drafted)
             self.introduced.append(segment)
         else:
             text = self.sheets.reaction(refinement)

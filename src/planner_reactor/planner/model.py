@@ -15,6 +15,7 @@ import msgspec
 from msgspec.structs import replace
 
 from planner_reactor.logic.formulas import Atom
+from planner_reactor.planner.because import Because
 from planner_reactor.planner.reactions import Names
 from planner_reactor.planner.situations import Child, Context, Refinement, Situation
 
@@ -43,6 +44,7 @@ class Segment(msgspec.Struct):
     avoided: frozenset[str] = frozenset()
     settled: bool = False
     asked: tuple[Atom, ...] = ()
+    because: tuple[Because, ...] = ()  # why it is open
 
     @property
     def is_stub(self) -> bool:
@@ -97,7 +99,7 @@ class Model:
 
     def named(self, name: str) -> Segment | None:
         """The segment of the situation with this name."""
-        situation = self.names.situation(name)
+        situation = self.names.named(name)
         return None if situation is None else self.segments.get(situation)
 
     def new(self, situation: Situation, context: Context, path: tuple[int, ...] = ()) -> Segment:
@@ -174,6 +176,10 @@ class Model:
             segment.context = context
             waiting.extend(child.situation for child in segment.children)
         return changed
+
+    def why(self, situation: Situation, drafted: Drafted) -> tuple[Because, ...]:
+        """Why a situation is new: a draft has a situation assert it."""
+        return tuple(Because("caller", self.names[caller]) for caller in drafted.calls.get(situation, ()))
 
     def orphans(self, segment: Segment, children: Iterable[Child]) -> list[Segment]:
         """What nothing asserts any more once the segment has these children instead of its own; top-down."""

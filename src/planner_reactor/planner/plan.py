@@ -84,10 +84,11 @@ class Link(msgspec.Struct, frozen=True):
 
 
 class Use(msgspec.Struct, frozen=True):
-    """An assumption that the plan rests on, or (not `required`) only brings in."""
+    """An assumption that the plan rests on, or (not `required`) only brings in; `about`: what it is needed for."""
 
     assumption: str
     required: bool
+    about: Atom | None = None
 
 
 @dataclass(slots=True)

@@ -18,11 +18,14 @@ from collections.abc import Mapping
 from msgspec.structs import replace
 
 from planner_reactor.analysis.adaptations import Environment
+from planner_reactor.errors import InputError
 from planner_reactor.link.messages import Mode, Perception
 from planner_reactor.logic.domain import Domain
 from planner_reactor.logic.formulas import Atom
 from planner_reactor.planner.agenda import ACTIVE_STUB, FAILED_ASSUMPTION, FAILED_SITUATION, QUIESCENT
+from planner_reactor.planner.because import Because
 from planner_reactor.planner.convergence import lacking, unlikelihood
+from planner_reactor.planner.explaining import Explanation, explain
 from planner_reactor.planner.foresight import Foresight
 from planner_reactor.planner.goals import chosen_goal
 from planner_reactor.planner.issuing import Issuer
@@ -141,6 +144,15 @@ class Planner:
         """The adaptations that were not issued because they do not hold: by id, the situations and why."""
         return self._withheld
 
+    def explain(self, adaptation: int) -> Explanation:
+        """Why an adaptation was issued, and why its reactions are what they are; of the last 10,000."""
+        record = self._reducer.records.get(adaptation)
+        if record is not None:
+            return explain(record, self._reducer.theory, fold=self._issuer.fold)
+        if not 0 < adaptation < self._issuer.next_id:
+            raise InputError(f"no adaptation {adaptation}, the last is {self._issuer.next_id - 1}")
+        return Explanation(adaptation, "monitors and requests", (), ())
+
     def meet(self, environment: Environment) -> None:
         """What is known of the basic processes from now on: bounds of adaptations are numbers."""
         if self._gate is not None:
@@ -203,8 +215,9 @@ class Planner:
         if name is None:
             return None
         self._counts["reinstated"] += 1
-        self._reducer.reconsider()
-        self._reducer.mark_outdated(QUIESCENT)
+        because = Because("reinstated", name)
+        self._reducer.reconsider(because)
+        self._reducer.mark_outdated(QUIESCENT, because)
         self._assuming.note(None, done=self._reducer.is_done)
         return Step("reinstate", assumption=name, cause="reinstated", purpose=f"reinstate {name}")
 
@@ -218,14 +231,14 @@ class Planner:
         self._relax(name, "normal", QUIESCENT)
         return Step("relax", assumption=name, cause="normal", purpose=f"relax {name}")
 
-    def _relax(self, name: str, cause: Cause, urgency: int) -> None:
+    def _relax(self, name: str, cause: Cause, urgency: int, told: int | None = None) -> None:
         """Plan without an assumption from now on."""
         self._counts[cause] += 1
         before = self.unlikelihood
         self._assuming.give_up(name, cause)
         self._reducer.convergence.relaxed(name, before, self.unlikelihood)
         self._reducer.abandon()
-        self._reducer.mark_outdated(urgency)
+        self._reducer.mark_outdated(urgency, Because(cause, name, told))
         self._assuming.note(None, done=self._reducer.is_done)
 
     # ---------------------------------------------------------------------------------------- perceptions
@@ -243,11 +256,12 @@ class Planner:
             case "adaptation_timed_out":
                 self._reducer.not_applied(int(perception.subject))
             case "stub_trigger":
-                self._reducer.raise_urgency(perception.subject, ACTIVE_STUB)
+                because = Because("stub_trigger", perception.subject, perception.number)
+                self._reducer.raise_urgency(perception.subject, ACTIVE_STUB, because)
             case "situation_failure":
-                self._situation_failed(perception.subject)
+                self._situation_failed(perception.subject, perception.number)
             case "assumption_failure":
-                self._assumption_failed(perception.subject)
+                self._assumption_failed(perception.subject, perception.number)
             case "assumption_holds":
                 self._assuming.holds_again(perception.subject)
             case "information":
@@ -255,21 +269,21 @@ class Planner:
             case "guard_kill" | "error":
                 pass  # completion is told by adaptation_applied; errors are counted
 
-    def _situation_failed(self, name: str) -> None:
+    def _situation_failed(self, name: str, number: int) -> None:
         """Its turn comes first; failures that nothing explains count as evidence, if there is no
         more patience.
         """
-        segment = self._reducer.raise_urgency(name, FAILED_SITUATION)
+        segment = self._reducer.raise_urgency(name, FAILED_SITUATION, Because("situation_failure", name, number))
         self._failures[name] += 1
         if self.patience and segment and self._failures[name] >= self.patience:
             self._failures[name] = 0
             doubtful = self._assuming.least_likely(segment.required)
             if doubtful is not None and not segment.stale:
-                self._relax(doubtful, "forced", FAILED_ASSUMPTION)
+                self._relax(doubtful, "forced", FAILED_ASSUMPTION, number)
 
-    def _assumption_failed(self, name: str) -> None:
+    def _assumption_failed(self, name: str, number: int) -> None:
         if self._assuming.fails(name):
-            self._relax(name, "forced", FAILED_ASSUMPTION)
+            self._relax(name, "forced", FAILED_ASSUMPTION, number)
 
     def _told(self, perception: Perception) -> None:
         """An answer to a perception request: plan again what asked for it."""
@@ -278,4 +292,4 @@ class Planner:
             atom = Atom(perception.subject, tuple(arguments))
             self._assuming.beliefs = self._assuming.beliefs.learning(atom, holds=verdict == "holds")
             self._issuer.requests.pop(atom, None)
-            self._reducer.reconsider(atom)
+            self._reducer.reconsider(Because("information", str(atom), perception.number), atom)

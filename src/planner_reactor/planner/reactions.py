@@ -56,7 +56,7 @@ _NAME = re.compile(r"[A-Za-z_]\w*")
 
 
 class Names:
-    """A name of its own for every situation: the action's, then its constants (`Tend`, `fern` →
+    """A `Lettering`: a name of its own for every situation, the action's, then its constants (`Tend`, `fern` →
     `TendFern`).
     """
 
@@ -64,9 +64,17 @@ class Names:
         self._names: dict[Situation, str] = {}
         self._situations: dict[str, Situation] = {}
 
-    def situation(self, name: str) -> Situation | None:
+    def named(self, name: str) -> Situation | None:
         """The situation that was given this name."""
         return self._situations.get(name)
+
+    def situation(self, situation: Situation) -> Symbol:
+        """Its name as it stands in a text."""
+        return Symbol(self[situation])
+
+    def constant(self, term: Term) -> Expression:
+        """A constant as it stands in a text."""
+        return constant(term)
 
     def __getitem__(self, situation: Situation) -> str:
         name = self._names.get(situation)
@@ -94,6 +102,11 @@ class Lettering(Protocol):
 def reaction(situation: Situation, composition: Composition, lettering: Lettering, *, fold: bool) -> Process:
     """The reaction of a refined situation."""
     return _Writing(situation, composition, lettering, fold).reaction(composition.tree)
+
+
+def names_of(situation: Situation, composition: Composition, *, fold: bool) -> dict[Term, str]:
+    """What the reaction calls its parameters and results."""
+    return _Writing(situation, composition, Names(), fold).names(composition.tree)
 
 
 def stub(situation: Situation, lettering: Lettering, period_ms: int) -> Process:
@@ -155,6 +168,10 @@ class _Writing:
         head = Call("SIT", (name,), (INSTANCE, *self._parameters))
         several = None in self._situation.arguments and not self._fold
         return Spawn(head, body) if several else Loop(head, body)
+
+    def names(self, tree: Tree) -> dict[Term, str]:
+        self._name_results(tree)
+        return dict(self._variables)
 
     def _name_results(self, tree: Tree) -> None:
         """Number the results in the order of the text; an output has one name, whichever branch it

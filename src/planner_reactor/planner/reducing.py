@@ -18,8 +18,10 @@ from planner_reactor.link.messages import Adaptation
 from planner_reactor.logic.domain import ActionSchema
 from planner_reactor.logic.formulas import Atom
 from planner_reactor.planner.agenda import FAILED_ASSUMPTION, QUIESCENT, Agenda
+from planner_reactor.planner.because import Because, Trigger
 from planner_reactor.planner.convergence import Convergence
 from planner_reactor.planner.drafts import Draft
+from planner_reactor.planner.explaining import Record, Subject
 from planner_reactor.planner.goals import root_schema
 from planner_reactor.planner.issuing import MOST_REFUSALS, Issuer, UnderWay
 from planner_reactor.planner.memory import Memory
@@ -31,6 +33,7 @@ from planner_reactor.planner.steps import Step, StepKind
 from planner_reactor.planner.theory import Theory
 from planner_reactor.planner.thinking import advance
 
+MOST_RECORDS = 10_000
 UNITS = 24
 """So much work is done in one step (see `thinking`)."""
 
@@ -46,6 +49,7 @@ class Reducer:
     assuming: Assuming
     counts: Counter[str]
     convergence: Convergence = field(default_factory=Convergence)
+    records: dict[int, Record] = field(default_factory=dict)  # of the last adaptations, to be explained
     memory: Memory = field(init=False)
     start: Segment = field(init=False)
     _root: ActionSchema = field(init=False)
@@ -60,7 +64,9 @@ class Reducer:
 
     def _new_start(self) -> Segment:
         granted = (True,) * len(self._root.executability)
-        return self.model.new(self.model.root, Context(granted, frozenset(), frozenset({self.goal})))
+        start = self.model.new(self.model.root, Context(granted, frozenset(), frozenset({self.goal})))
+        start.because = (Because("goal", self.goal),)
+        return start
 
     @property
     def has_begun(self) -> bool:
@@ -170,13 +176,23 @@ class Reducer:
             self._agenda.push(stub)
         forced = self.assuming.causes.get(draft.assumption) == "forced"
         changed = self.model.renew_contexts(below)
-        self.mark(changed, FAILED_ASSUMPTION if forced else QUIESCENT)
+        self.mark(changed, FAILED_ASSUMPTION if forced else QUIESCENT, Because("context", segment.name))
         self.convergence.reduced(segment, (*self.issuer.introduced, *changed))
         self.assuming.note(adaptation.id if adaptation else None, done=self.is_done)
+        because, segment.because = segment.because, ()
         if adaptation is None:
             return self._step("refine", draft)
+        self._record(adaptation, draft, because)
         self.counts["issued"] += 1
         return self._step("refine", draft, adaptation)
+
+    def _record(self, adaptation: Adaptation, draft: Draft, because: tuple[Because, ...]) -> None:
+        """Keep what is needed to explain it."""
+        names = self.model.names
+        subjects = tuple(Subject(names[s], s, self._schema(s), *draft.contexts[s]) for s in draft.refinements)
+        self.records[adaptation.id] = Record(adaptation.id, adaptation.purpose, because, subjects)
+        if len(self.records) > MOST_RECORDS:
+            del self.records[next(iter(self.records))]
 
     def _give_up(self, segment: Segment, refinement: Refinement) -> None:
         """There is no plan for a situation: say so, leave it as it is, and let its callers try without it."""
@@ -189,7 +205,7 @@ class Reducer:
             caller = self.model.segments[situation]
             if not caller.settled:
                 caller.avoided |= {segment.situation.schema}
-                self.mark([caller], QUIESCENT)
+                self.mark([caller], QUIESCENT, Because("impossible", segment.name))
         self.assuming.note(None, done=self.is_done)
 
     def _step(self, kind: StepKind, draft: Draft, *adaptations: Adaptation) -> Step:
@@ -205,11 +221,12 @@ class Reducer:
         """
         if draft.thought is None:
             context, beliefs = self._context(situation, draft), self.assuming.beliefs
+            draft.contexts[situation] = context, beliefs
             key = self.memory.key(situation, context, beliefs)
             known = self.memory.recall(key, situation, beliefs)
             if known is not None:
                 return known, units - 1
-            schema = self._root if situation == self.model.root else self.theory.domain.schemas[situation.schema]
+            schema = self._schema(situation)
             draft.thought = key, refining(self.theory, beliefs, schema, situation, context, fold=self.issuer.fold)
         key, work = draft.thought
         found, left = advance(work, units)
@@ -217,6 +234,9 @@ class Reducer:
             draft.thought = None
             self.memory.keep(key, found)
         return found, left
+
+    def _schema(self, situation: Situation) -> ActionSchema:
+        return self._root if situation == self.model.root else self.theory.domain.schemas[situation.schema]
 
     def _context(self, situation: Situation, draft: Draft) -> Context:
         if situation == draft.segment.situation:
@@ -228,34 +248,38 @@ class Reducer:
 
     # ------------------------------------------------------------------------------------ what is to be done
 
-    def mark(self, segments: Iterable[Segment], urgency: int) -> None:
+    def mark(self, segments: Iterable[Segment], urgency: int, because: Because) -> None:
         """These have to be planned again."""
         for segment in segments:
+            if because not in segment.because:
+                segment.because = (*segment.because, because)
             segment.stale = True
             segment.impossible = ""
             segment.urgency = min(segment.urgency, urgency)
             self._agenda.push(segment)
 
-    def mark_outdated(self, urgency: int, *, given_up: bool = True) -> None:
+    def mark_outdated(self, urgency: int, because: Because, *, given_up: bool = True) -> None:
         """Everything has to be planned again that rests on what is relaxed now, or missed what is not; also what was
         `given_up` because it was refused too often.
         """
         relaxed = self.assuming.beliefs.relaxed
         outdated = [s for s in self.model if s.refinement and not s.refinement.serves(relaxed)]
-        self.mark([s for s in outdated if given_up or s.refusals < MOST_REFUSALS], urgency)
+        self.mark([s for s in outdated if given_up or s.refusals < MOST_REFUSALS], urgency, because)
 
-    def raise_urgency(self, name: str, urgency: int) -> Segment | None:
+    def raise_urgency(self, name: str, urgency: int, because: Because) -> Segment | None:
         """The reactor has to do with this situation now."""
         segment = self.model.named(name)
         if segment is not None:
             segment.urgency = min(segment.urgency, urgency)
             if segment.is_open:
+                if because not in segment.because:
+                    segment.because = (*segment.because, because)
                 self._agenda.push(segment)
                 if self._draft is not None and self._draft.segment is not segment:
                     self._draft = None
         return segment
 
-    def reconsider(self, about: Atom | None = None) -> None:
+    def reconsider(self, because: Because, about: Atom | None = None) -> None:
         """More holds, or more is known, than before: what seemed impossible, or was avoided, may
         be possible now.
         """
@@ -266,7 +290,7 @@ class Reducer:
             if segment.impossible or segment.avoided or segment.settled or about in asked:
                 segment.avoided, segment.settled = frozenset(), False
                 again.append(segment)
-        self.mark(again, QUIESCENT)  # the root, too, if it has not begun
+        self.mark(again, QUIESCENT, because)  # the root, too, if it has not begun
 
     # ------------------------------------------------------------------------------- answers of the reactor
 
@@ -281,18 +305,19 @@ class Reducer:
         self._agenda.release(adaptation)
         if flight is not None and flight.segment is not None:
             self.abandon()
-            self._plan_again(flight, flight.segment, why)
+            trigger: Trigger = "adaptation_refused" if why else "adaptation_timed_out"
+            self._plan_again(flight, flight.segment, why, Because(trigger, str(adaptation)))
 
-    def _plan_again(self, flight: UnderWay, situation: Situation, why: str) -> None:
+    def _plan_again(self, flight: UnderWay, situation: Situation, why: str, because: Because) -> None:
         if not self.has_begun:
             self.start = replace(self._new_start(), refusals=self.start.refusals)
         segment = self.model.segments.get(situation, self.start)
-        self.mark([segment], QUIESCENT)
+        self.mark([segment], QUIESCENT, because)
         segment.refusals += bool(why)
         if segment.refusals >= MOST_REFUSALS:
             segment.impossible = f"it was refused {segment.refusals} times ({why})"
         restored = [s for s, _ in flight.before]
         below = [c.situation for s in self.model for c in s.children if s.situation in restored]
         renewed = self.model.renew_contexts([*restored, *below])
-        self.mark([s for s in renewed if s.refusals < MOST_REFUSALS], QUIESCENT)
-        self.mark_outdated(QUIESCENT, given_up=False)
+        self.mark([s for s in renewed if s.refusals < MOST_REFUSALS], QUIESCENT, because)
+        self.mark_outdated(QUIESCENT, because, given_up=False)

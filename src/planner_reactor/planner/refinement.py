@@ -43,11 +43,13 @@ def refining(
     theory: Theory, beliefs: Beliefs, schema: ActionSchema, situation: Situation, context: Context, *, fold: bool
 ) -> Work[Refinement]:
     """The same as work that can be interrupted."""
-    return _Refining(theory, beliefs, schema, situation, context, fold).run()
+    return Refining(theory, beliefs, schema, situation, context, fold).run()
 
 
 @dataclass(slots=True)
-class _Refining:
+class Refining:
+    """One refinement being worked out; `plans` are those behind it, the first its own, others of branches."""
+
     theory: Theory
     beliefs: Beliefs
     schema: ActionSchema
@@ -62,6 +64,7 @@ class _Refining:
     cleanup: dict[Action, None] = field(default_factory=dict)
     upsets: set[Action] = field(default_factory=set)
     warnings: list[str] = field(default_factory=list)
+    plans: list[tuple[Problem, Plan]] = field(default_factory=list)
     numbered: int = 0  # steps of all plans so far
 
     def run(self) -> Work[Refinement]:
@@ -132,6 +135,7 @@ class _Refining:
         if plan is None:
             return None
         self.numbered += len(plan.steps)
+        self.plans.append((problem, plan))
         self._count(problem, plan)
         self.outputs.append(tuple(plan.bindings.walk(term) for term in problem.outputs))
         otherwise: dict[int, Tree] = {}

@@ -67,7 +67,7 @@ class Supports:
         self.consulted.missing |= lasting.missing
         if not lasting.holds or not self.plan.bindings.unify(goal.atom.arguments, fact.arguments):
             return None
-        self.plan.uses.extend(Use(name, True) for name in sorted(lasting.used))
+        self.plan.uses.extend(Use(name, True, goal.atom) for name in sorted(lasting.used))
         return []
 
     def _by_truth(self, goal: Goal, truth: Truth) -> list[Goal] | None:
@@ -82,7 +82,7 @@ class Supports:
                 return None
             return self._linked(goal, Link(truth.atom, START, goal.consumer, goal.condition, lost=True))
         required = not self._is_abstract(goal.consumer)
-        self.plan.uses.extend(Use(name, required) for name in sorted(lasting.used))
+        self.plan.uses.extend(Use(name, required, truth.atom) for name in sorted(lasting.used))
         return self._linked(goal, Link(truth.atom, START, goal.consumer, goal.condition, self._throughout(goal)))
 
     def _steps(self, goal: Goal, atom: Atom) -> Iterator[Way]:
@@ -128,7 +128,7 @@ class Supports:
         if not plan.bindings.unify(goal.atom.arguments, rule.head.shifted(offset).arguments):
             return None
         if rule.assumptions:
-            if not self.assume(a.shifted(offset) for a in rule.assumptions):
+            if not self.assume((a.shifted(offset) for a in rule.assumptions), goal.atom):
                 return None
             plan.links.append(Link(goal.atom, START, goal.consumer, goal.condition, derived=True))
         for one, other in rule.distinct:
@@ -164,7 +164,7 @@ class Supports:
             return None
         presumed = self.problem.beliefs.assume(schema.presumes)
         self.consulted.missing |= presumed.missing
-        self.plan.uses.extend(Use(name, False) for name in sorted(presumed.used))
+        self.plan.uses.extend(Use(name, False, Atom(schema.name)) for name in sorted(presumed.used))
         return [
             Goal(condition.atom.shifted(step.offset), condition.relation, step.number, n)
             for n, condition in enumerate(schema.executability)
@@ -176,15 +176,15 @@ class Supports:
         for atom in step.schema.applicability:
             ground = bindings.ground(atom.shifted(step.offset))
             if atom.predicate in beliefs.domain.assumptions:
-                if not self.assume((ground,)):
+                if not self.assume((ground,), Atom(step.schema.name)):
                     return False
             elif not self._is_known(ground):
                 return False
         return True
 
-    def assume(self, atoms: Iterable[Atom]) -> bool:
-        """Rest the plan on these assumptions, if they hold; one whose arguments are still open
-        waits for them.
+    def assume(self, atoms: Iterable[Atom], about: Atom) -> bool:
+        """Rest the plan on these assumptions, if they hold, for what they are `about`; one whose arguments are
+        still open waits for them.
         """
         plan, told = self.plan, []
         for atom in atoms:
@@ -195,7 +195,7 @@ class Supports:
                 told.append(ground)
         answer = self.problem.beliefs.assume(told)
         self.consulted.missing |= answer.missing
-        plan.uses.extend(Use(name, True) for name in sorted(answer.used))
+        plan.uses.extend(Use(name, True, about) for name in sorted(answer.used))
         return answer.holds
 
     def settle_assumed(self) -> bool:
