@@ -8,12 +8,13 @@ before, or that killed its neighbour.
 from __future__ import annotations
 
 import argparse
+import ast
 import json
 import os
 import time
 
 from tests.mutants.campaign import OUT, TESTS, Mutant, mutants, summary, unexplained, write_table
-from tests.mutants.running import Code, judged
+from tests.mutants.running import ROOT, Code, judged
 
 
 def main() -> None:
@@ -28,6 +29,7 @@ def main() -> None:
     known = {} if given.fresh else _known()
     code = Code()
     code.warm(TESTS)
+    _sound(code)
     found = [m for m in mutants() if not given.module or m.module == given.module]
     results = []
     killers: dict[str, str] = {}
@@ -48,6 +50,14 @@ def main() -> None:
     if not given.module:
         write_table(results)
     raise SystemExit(bool(unexplained(results)))
+
+
+def _sound(code: Code) -> None:
+    """The tests pass on the rules as they are: else every mutant would seem to be found."""
+    source = (ROOT / "src/planner_reactor/rs/evolves.py").read_text(encoding="utf-8")
+    verdict = judged(code, "planner_reactor.rs.evolves", ast.parse(source), TESTS)
+    if verdict.fate != "survived":
+        raise SystemExit(f"without any mutant {verdict.by} fails: {verdict.problem}")
 
 
 def _known() -> dict[str, dict[str, str]]:

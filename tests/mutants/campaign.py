@@ -22,6 +22,7 @@ EQUIVALENT = ROOT / "tests/mutants/equivalent.toml"
 TESTS = (
     "tests.rs.test_evolves",
     "tests.rs.test_rules",
+    "tests.analysis.test_evolution",
     "tests.analysis.test_explore",
     "tests.mutants.samples",
 )

@@ -131,6 +131,7 @@ def test_assert_tells_why_its_instance_failed() -> None:
     assert causes(SERVED, "Delay[1] ; DRAIN[s]", "ASSERT[s]") == {"withdrawn"}
     assert causes("STOP", "Delay[1] ; DRAIN[s]", "ASSERT[s]") == {"withdrawn"}
     assert causes("STOP", "Delay[1] ; DISABLE[s, A]", "ASSERT[s]") == {"assumption"}
+    assert causes("SIT[s]<k> :; (STUB[s] ; Delay[3])", "Delay[1] ; DISABLE[s, A]", "ASSERT[s]") == {"assumption"}
     assert causes("ASSERT[7]") == {"error"}
 
 
@@ -681,6 +682,8 @@ def test_time_the_windows_of_the_leaves_that_time_ends() -> None:
     w = world()
     for name, seconds, found in (("Delay", 2, (2.0, 2.0)), ("SUSPEND", 500, (0.5, 0.5)), ("Term", 2, (0.0, 2.0))):
         assert window(Leaf(name, (seconds,)), w) == found
+    for arguments, found in (((0.5,), 0.5), ((-3,), 0.0), (("p",), 0.0), ((), 0.0)):
+        assert window(Leaf("Delay", arguments), w) == (found, found)
     assert window(Leaf("timed"), w) == (1.0, 3.0)
     assert window(Leaf("unknown"), w) == (0.0, 0.0)
     for name in ("IN", "OUT", "SIT", "KILL", "NIL", "ASSERT", "E", "ADD", "POST"):
@@ -757,3 +760,18 @@ def test_renew_of_a_disabled_situation_gives_up_what_is_on() -> None:
     serving = "(SIT[s]<k> :; NIL) | (SIT[t]<j> :; NIL) | ASSERT[s] | ASSERT[t]"
     config = following(serving, "Delay[1] ; DISABLE[s, A] ; RENEW[s] ; RENEW[t]", until=2)
     assert [(i.situation, i.withdrawn) for i in config.store.instances] == [("s", True), ("t", False)]
+
+
+def test_queued_asserts_never_share_a_ticket() -> None:
+    store, first = Store().queued("s", (1,), None)
+    store, second = store.queued("s", (2,), None)
+    store, third = store.queued("s", (3,), None)
+    assert (first, second, third) == (-1, -2, -3)
+    assert store.left_queue(second).queued("s", (), None)[1] == -4
+    assert [q.arguments for q in store.left_queue(second).queue] == [(1,), (3,)]
+
+
+def test_sit_with_nothing_after_it_is_no_body() -> None:
+    config = following("SIT[s]<k>", "ASSERT[s]", until=1)
+    assert config.root(1) == Ended(True, (("k", 1),))
+    assert config.store.run == ()
