@@ -7,8 +7,8 @@ import pytest
 from planner_reactor.experiments.hierarchy import Act, AtOnce, InOrder, Node, Part, folded, hierarchy
 from planner_reactor.experiments.papers_run import Replay
 from planner_reactor.experiments.snapshots import Snapshot, reactor_at
-from planner_reactor.rs.reactions import reaction_of
 from planner_reactor.rs.parser import parse_program
+from planner_reactor.rs.reactions import reaction_of
 
 TEXT = """
 P[0] = STOP :; ASSERT[day]
