@@ -39,8 +39,8 @@ def main() -> int:
         "executer": (throughput, reactions, costs),
         "planner": (planner_rows.planning,),
         "transitions": (transition_rows.systems,),
+        "network": (bench_network.rows,),
     }
-    parts["network"] = (bench_network.rows,)
     rows = [row for name, part in parts.items() if given.only in (None, name) for do in part for row in do(peers)]
     found = {
         "python": platform.python_version(),
