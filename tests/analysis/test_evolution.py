@@ -277,7 +277,7 @@ def test_every_symbolic_step_that_can_be_met_is_met_by_a_concrete_one(seed: int)
             returned = tuple(values.setdefault(v, 1.0) if isinstance(v, Unknown) else v for v in e.label[3])
             answers = concrete_world(symbolic, [(True, returned), (False, ())], share=None)
             concrete = at(state.config, values)
-            own = [s for s in steps(concrete, replace(answers, program=instance_of(symbolic.program, values)))]
+            own = list(steps(concrete, replace(answers, program=instance_of(symbolic.program, values))))
             assert any(matches(e, s.label, s.after, values) is not None for s in own), (process, text(e.condition))
             met += 1
     assert met > 20
