@@ -10,10 +10,13 @@ from pathlib import Path
 
 import pytest
 
+from planner_reactor.analysis import networks, stubborn
 from planner_reactor.analysis.automata import Automata, compiled
 from planner_reactor.analysis.cells import Entangled
 from planner_reactor.analysis.enumeration import enumerated
 from planner_reactor.analysis.explore import explore
+from planner_reactor.analysis.exports import graph as drawn
+from planner_reactor.analysis.exports import one_process
 from planner_reactor.analysis.networks import Vector, networked, whole
 from planner_reactor.analysis.partitions import strong
 from planner_reactor.analysis.promela import promela
@@ -139,6 +142,27 @@ def test_reduction_keeps_every_deadlock_and_every_state_of_every_cell() -> None:
     assert smaller > 50
 
 
+def test_stubborn_sets_that_look_at_the_present_only_lose_something(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A seeded defect: what a cell may come to offer later is forgotten."""
+    monkeypatch.setattr(stubborn, "_later", lambda cell, now: now)
+    lost = 0
+    for _, automata, whole_graph in some_nets():
+        found = reduced(automata)
+        every = [{v[n] for v in whole_graph} for n in range(len(automata.cells))]
+        lost += set(found.deadlocks) != stuck(automata, whole_graph) or [set(s) for s in found.local] != every
+    assert lost > 0
+
+
+def test_cells_that_forget_the_labels_of_reactions_are_wrong(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A seeded defect: guards and who kills them are taken apart."""
+    text = "(E[1] # NIL) | KILL[1]"
+    right = build(*begun(text))
+    monkeypatch.setattr(networks, "STORE_KINDS", ("situation",))
+    wrong = build(*begun(text))
+    assert len(right.network.cells) == 1
+    assert {str(label) for label in right.labels} != {str(label) for label in wrong.labels}
+
+
 def test_reduction_without_the_proviso_loses_states_of_cells() -> None:
     """What the proviso is for: with it removed, some cell's states are never seen."""
     config, world = begun("(a :; a) | (b ; b)")
@@ -182,11 +206,28 @@ def test_spin_agrees_on_each_random_net() -> None:
     print(f"{asked} nets agree, {deadlocked} of them with deadlocks")
 
 
+@WITHOUT_SPIN
+def test_spin_agrees_where_time_passes() -> None:
+    """Then the whole system is exported as one process, and SPIN looks at each of its states."""
+    whole_systems = []
+    for seed in range(16):
+        config, world = begun(Nets(seed, delays=True).text())
+        found = build(config, world, limit=LIMIT)
+        if any(label[0] == "TIME" for label in found.labels):
+            whole_systems.append(found)
+    assert len(whole_systems) > 4
+    model = one_of([one_process(drawn(found), title="timed") for found in whole_systems])
+    states = sum(map(len, whole_systems))
+    asked = spin.searched(model, fast=False, expected=states)
+    assert asked.states == states + 1
+    assert asked.deadlocks == sum(len(found.deadlocks) for found in whole_systems)
+
+
 def one_of(models: list[str]) -> str:
     """A model that is one of these, whichever SPIN chooses at first."""
     texts, choices = [], []
     for n, model in enumerate(models):
-        own = re.sub(r"\b(cell|port)_", rf"net{n}_\1_", model.replace("active proctype", "proctype"))
+        own = re.sub(r"\b(cell_|port_|system\b)", rf"net{n}_\1", model.replace("active proctype", "proctype"))
         texts.append(own)
         runs = "; ".join(f"run {name}()" for name in re.findall(r"proctype (\w+)\(", own))
         choices.append(f"  :: true -> {runs}")
