@@ -1,8 +1,8 @@
 """How long the limit sets of the papers take: `python benchmarks/bench_limits.py [--executions N]`.
 
-X (8), (12) and (15), from text to set, and the Zeno loop of the tracking world as printed. Each is asked seven times; what
-is shown is processor time, the median and the least, with the goal beside it. With `--executions`, so many concrete
-runs of each model are held against its set as well.
+X (8), (12) and (15), from text to set, and the Zeno loop of the tracking world as printed. Each is asked seven times;
+what is shown is processor time, the median and the least, with the goal beside it. With `--executions`, so many
+concrete runs of each model are held against its set as well.
 """
 
 from __future__ import annotations
@@ -14,11 +14,11 @@ from collections.abc import Callable
 from pathlib import Path
 from statistics import median
 
-sys.path.insert(0, str(Path(__file__).parent.parent))
-
 from planner_reactor.analysis.zeno import zeno
 from planner_reactor.workcell.environments.dynamics import model
-from tests.analysis.executions import campaign
+
+sys.path.insert(0, str(Path(__file__).parent.parent))
+from tests.analysis.executions import campaign  # the tests hold runs against sets in the same way
 from tests.analysis.models import CALLS, SENSORS, limits, read, shipped
 
 ROUNDS = 7
@@ -52,8 +52,8 @@ def main() -> int:
         unforetold, unreached, ended = campaign(
             name, given.executions, 11, SENSORS, limits(symbolic).limits, symbolic
         )
-        print(f"{EQUATIONS[name]}: {ended} of {given.executions} runs came to a limit, {len(unforetold)} to one that the"
-              f" set lacks; {len(unreached)} limits were not reached")  # fmt: skip
+        runs = f"{ended} of {given.executions} runs came to a limit"
+        print(f"{EQUATIONS[name]}: {runs}, {len(unforetold)} to one that the set lacks; {len(unreached)} not reached")
     return 0
 
 

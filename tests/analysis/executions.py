@@ -63,7 +63,8 @@ def first_limit(model: Model, sensors: Iterable[str], draw: Random, limit: int =
         choices = list(offers(config, world))
         if not any(offer.urgent for offer in choices):
             ahead = [d for d in boundaries(config, world) if d > 0]
-            if (seconds := min((*ahead, slack(config, world)), default=inf)) < inf and (not choices or draw.random() < 0.8):
+            seconds = min((*ahead, slack(config, world)), default=inf)
+            if seconds < inf and (not choices or draw.random() < 0.8):
                 config = elapsed(config, seconds, world)
                 continue
         if not choices:
