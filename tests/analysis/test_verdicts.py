@@ -2,6 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
+import pytest
+
+from planner_reactor.analysis.lassos import Lasso
 from planner_reactor.analysis.transitions import Transitions, build
 from planner_reactor.analysis.verdicts import deadlock, endless, livelock, zeno
 from planner_reactor.calls.replaying import replay
@@ -67,6 +72,22 @@ def test_counterexamples_run_in_the_executer() -> None:
                 assert replay([parse_process(text)], world, labels).done, (seed, text, labels)
     assert found["deadlock"] > 20
     assert found["zeno"] > 0
+
+
+@pytest.mark.parametrize(
+    ("text", "verdict"),
+    [
+        ("a ; ((OUT[p, 1] :; STOP) | (IN[p]<x> :; STOP))", livelock),
+        ("(a :; ASSERT[s]) | (SIT[s]<k> :; a)", lambda found: endless(found, "s")),
+    ],
+)
+def test_livelocks_and_endless_situations_run_in_the_executer(
+    text: str, verdict: Callable[[Transitions], Lasso | None]
+) -> None:
+    config, world = begun(text)
+    way = verdict(build(config, world))
+    assert way is not None
+    assert replay([parse_process(text)], world, (*way.prefix, *way.cycle * 3)).done
 
 
 def test_what_the_semantics_does_not_allow_does_not_run() -> None:
