@@ -12,7 +12,7 @@ from planner_reactor.analysis.explore import Exploration, explore
 from planner_reactor.errors import BudgetError
 from planner_reactor.rs.configurations import Config, World
 from planner_reactor.rs.evolves import killed, started
-from planner_reactor.rs.leaves import elapsed, offers, slack, steps, window
+from planner_reactor.rs.leaves import elapsed, offers, slack, steps, urgent, window
 from planner_reactor.rs.parser import parse_process
 from planner_reactor.rs.states import (
     Await,
@@ -29,7 +29,7 @@ from planner_reactor.rs.states import (
 )
 from planner_reactor.rs.store import Instance, Store
 from planner_reactor.rs.vocabulary import BUILT_IN, Signature
-from tests.rs.test_evolves import STOPS, run, world
+from tests.rs.test_evolves import ABORTS, STOPS, run, world
 
 SERVED = "SIT[s]<k> :; (Delay[5] ; SUCCEED[s, k])"
 
@@ -118,10 +118,9 @@ def test_the_cause_of_a_call_that_no_clause_fits() -> None:
 
 
 def test_n8_spawning_keeps_the_cause_of_its_condition_unless_a_body_stopped() -> None:
-    text = "((IN[p]<x> : GTR[x, 0]) :: {}) | ((OUT[p, 1] ; OUT[p, 0]) : ABORT)"
     for body, cause in (("no", "failed"), ("yes", "")):
-        reactor = text.replace("{}", body)
-        assert causes(f"({reactor})") == {cause}
+        assert causes("OUT[p, 1] ; OUT[p, 0]", f"(IN[p]<x> : GTR[x, 0]) :: {body}") == {cause}
+        assert causes("OUT[p, 1]", f"(IN[p]<x> : Delay[1/0]) :: {body}") == {"error"}
 
 
 def test_assert_tells_why_its_instance_failed() -> None:
@@ -480,7 +479,7 @@ def test_a_queued_assert_fails_when_its_owner_is_withdrawn_or_has_ended() -> Non
     reactor = "(SIT[s]<k> :; ((Delay[3] ; ASSERT[t]) & NIL)) | (SIT[t]<i> :; NIL) | ASSERT[t]"
     config = following(reactor, "ASSERT[s]", "Delay[1] ; DRAIN[t]", "Delay[4] ; DRAIN[s]", until=5)
     assert config.store.queue == ()
-    assert [e.cause for e in inside(config.root(1)) if isinstance(e, Ended)] == ["withdrawn"]
+    assert [(e.ok, e.cause) for e in inside(config.root(1)) if isinstance(e, Ended)] == [(False, "withdrawn")]
 
 
 def test_update_changes_an_instance_that_is_on_and_of_its_situation() -> None:
@@ -775,3 +774,61 @@ def test_sit_with_nothing_after_it_is_no_body() -> None:
     config = following("SIT[s]<k>", "ASSERT[s]", until=1)
     assert config.root(1) == Ended(True, (("k", 1),))
     assert config.store.run == ()
+
+
+def test_a_queued_assert_goes_on_when_its_own_situation_is_released() -> None:
+    script = "DRAIN[s] ; DRAIN[t] ; Delay[2] ; UNINHIBIT[t] ; NIL"
+    config = following(script, "Delay[1] ; (ASSERT[s] | ASSERT[t])", until=3)
+    assert [q.situation for q in config.store.queue] == ["s"]
+    assert [i.situation for i in config.store.instances] == ["t"]
+    assert sum(isinstance(t, Await) for t in inside(config.root(2))) == 1
+
+
+def test_time_is_held_by_one_urgent_step_among_others() -> None:
+    w = world()
+    assert urgent(begun("GTR[2, 1] | yes", w=w), w)
+    assert not urgent(begun("yes | no", w=w), w)
+    assert not urgent(begun("NIL", w=w), w)
+
+
+def test_a_delay_without_a_duration_aborts_at_once() -> None:
+    for text in ("Delay", "Term", "SUSPEND", "Delay[port]"):
+        assert run(text) == ABORTS
+
+
+def test_results_of_a_leaf_are_sorted_by_name() -> None:
+    w = world()
+    config = begun("SIT[s]<z, y>", "ASSERT[s, 5]", w=w)
+    config = next(steps(config, w)).after
+    config = next(steps(config, w)).after
+    end = config.root(1)
+    assert isinstance(end, Ended)
+    assert end.bindings == (("y", 5), ("z", 1))
+
+
+def test_reassert_gives_up_within_the_step_that_ends_its_child() -> None:
+    reactor = "(SIT[s]<k> :; (REASSERT[t] & NIL)) | (SIT[t]<j> :; (Delay[2] ; FAIL[t, j]))"
+    found = explored(reactor, "ASSERT[s]", "Delay[1] ; DRAIN[s]")
+    labels = {label for moves in found.moves for label, _ in moves}
+    assert ("REASSERT", ("t",), "wait", ()) in labels
+    assert ("REASSERT", ("t",), "ab", ()) not in labels
+
+
+def test_reassert_that_was_queued_repeats_and_an_assert_does_not() -> None:
+    reactor = "SIT[s]<k> :; (~(IN[p]<x> : GTR[x, 0] : SUCCEED[s, k]) : FAIL[s, k])"
+    script = "DRAIN[s] ; Delay[2] ; UNINHIBIT[s] ; NIL"
+    for call, outcome, left in (("REASSERT", Ended(True), 0), ("ASSERT", Ended(False), 1)):
+        config = following(reactor, script, f"Delay[1] ; {call}[s]", "OUT[p, 0] ; OUT[p, 1]", until=4)
+        assert config.root(3) == outcome
+        assert sum(isinstance(t, Leaf) for t in inside(config.root(4))) == left
+
+
+def test_what_waits_for_the_store_stops() -> None:
+    for text in ("WAIT[s]", "WAITINHIBIT[s]", "DRAIN[s]", "WAITOLD[s]"):
+        assert run(text) == STOPS
+
+
+def test_inhibitions_keep_their_order_when_one_is_taken_back() -> None:
+    config = following("INHIBIT[s] ; INHIBIT[t] ; DRAIN[s] ; INHIBIT[u] ; UNINHIBIT[t] ; NIL", until=1)
+    assert [(h.situation, h.kind) for h in config.store.inhibitions] == [
+        ("s", "inhibit"), ("s", "drain"), ("u", "inhibit")]  # fmt: skip
