@@ -1,4 +1,4 @@
-"""What a program can do: its states, limit sets, properties, adaptations; equivalence of behaviours, conformance of runs.
+"""What a program can do: states, limit sets, properties, adaptations; equivalence of behaviours, conformance of runs.
 
 Where to look: `explore` is the plain reading, every configuration of a small program; `transitions` the fast one, over
 `networks` of `cells`, which `partitions` and `stubborn` reduce, `factoring` and `enumeration` count, `verdicts` judge
