@@ -84,4 +84,4 @@ def _show_network(result: dict[str, Any]) -> None:
     if result["metric"]:
         print("timeline, in milliseconds:")
         for interval, (start, end) in result["timeline"].items():
-            print(f"  {interval} {start:g} .. {end:g}")
+            print(f"  {interval} {start:.10g} .. {end:.10g}")
