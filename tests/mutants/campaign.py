@@ -19,12 +19,21 @@ OUT = ROOT / "out/mutants.jsonl"
 TABLE = ROOT / "tests/mutants/table.json"
 EQUIVALENT = ROOT / "tests/mutants/equivalent.toml"
 
-TESTS = (
+RULE_TESTS = (
     "tests.rs.test_evolves",
-    "tests.rs.test_rules",
-    "tests.analysis.test_evolution",
+    "tests.rs.test_rules_of_situations",
+    "tests.rs.test_rules_of_offers",
+    "tests.rs.test_rules_of_terms",
+    "tests.rs.test_rules_of_causes",
+    "tests.rs.test_states",
+)
+"""The tests of the rules themselves: a second in all."""
+
+TESTS = (
+    *RULE_TESTS,
     "tests.analysis.test_explore",
     "tests.mutants.samples",
+    "tests.analysis.test_evolution",
 )
 """The modules of tests that a mutant meets, the quick ones first."""
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 import ast
 import re
 
-MODULES = ("evolves", "leaves", "store", "states", "configurations")
+MODULES = ("evolves", "leaves", "serving", "store", "states", "configurations")
 """The modules of `planner_reactor.rs` that are the semantics."""
 
 IDS = re.compile(r"\b(N\d+'?|SEQ|PAR|COM|TIME)(?![\w'])")
@@ -22,12 +22,14 @@ FUNCTIONS = {
         "settle": "settling", "_quiet": "settling", "_undecided": "N5",
     },
     "leaves": {
-        "": "leaves", "steps": "PAR", "_settled": "settling", "window": "TIME", "_seconds": "TIME", "_ended": "TIME",
-        "_endings": "outcomes", "_results": "outcomes", "slack": "TIME", "_older": "TIME", "assert_": "ASSERT",
-        "sit": "SIT", "succeed": "SUCCEED", "fail": "FAIL", "_ended_instance": "SUCCEED", "update": "UPDATE",
-        "wait": "WAIT", "drain": "DRAIN", "inhibit": "INHIBIT", "uninhibit": "UNINHIBIT", "disable": "DISABLE",
-        "enable": "ENABLE", "stub": "STUB", "report": "REPORT", "_posted": "POST", "_named": "COM",
-        "_killed": "KILL", "resting": "KILL", "Step": "TIME",
+        "": "leaves", "steps": "PAR", "window": "TIME", "_seconds": "TIME", "_ended": "TIME", "_endings": "outcomes",
+        "slack": "TIME", "_older": "TIME", "_posted": "POST", "_named": "COM", "_killed": "KILL", "resting": "KILL",
+        "Step": "TIME",
+    },
+    "serving": {
+        "": "leaves", "assert_": "ASSERT", "sit": "SIT", "succeed": "SUCCEED", "fail": "FAIL",
+        "_ended_instance": "SUCCEED", "update": "UPDATE", "wait": "WAIT", "drain": "DRAIN", "inhibit": "INHIBIT",
+        "uninhibit": "UNINHIBIT", "disable": "DISABLE", "enable": "ENABLE", "stub": "STUB", "report": "REPORT",
     },
     "store": {
         "Instance": "ASSERT", "Inhibition": "INHIBIT", "QueuedAssert": "ASSERT", "Store": "ASSERT",
@@ -43,7 +45,7 @@ FUNCTIONS = {
     },
     "states": {
         "parts_of": "SEQ", "with_parts": "SEQ", "put": "SEQ", "guard_of": "KILL", "spots": "SEQ", "bind": "N4",
-        "only": "scopes", "variables": "scopes", "leaf_of": "begin",
+        "only": "scopes", "variables": "scopes", "leaf_of": "begin", "results_of": "outcomes",
     },
     "configurations": {"": "roots", "World": "N7", "Config": "roots", "spawned_situations": "ASSERT"},
 }  # fmt: skip

@@ -12,6 +12,7 @@ import contextlib
 import importlib.abc
 import importlib.machinery
 import importlib.util
+import inspect
 import itertools
 import os
 import resource
@@ -183,12 +184,14 @@ def _ordered(tests: Sequence[str], first: str) -> Iterator[tuple[str, Callable[[
 
 
 def _calls(name: str) -> Iterator[tuple[str, Callable[[], object]]]:
-    """The tests of a module, in order, for each of their parameters; a failing import is a failing test."""
+    """The tests of a module, in order, for each of their parameters, but those that ask for a fixture."""
     module = importlib.import_module(name)
     for test in list(vars(module).values()):
         if callable(test) and getattr(test, "__name__", "").startswith("test_") and test.__module__ == name:
             label = f"{name}:{test.__name__}"
             for keywords in _parameters(test):
+                if set(inspect.signature(test).parameters) - set(keywords):
+                    continue
                 yield label, lambda test=test, keywords=keywords: test(**keywords)
 
 

@@ -7,11 +7,10 @@ import json
 
 import pytest
 
-from tests.mutants.campaign import TABLE, Mutant, equivalents, mutants, score
+from tests.mutants.campaign import RULE_TESTS, TABLE, Mutant, equivalents, mutants, score
 from tests.mutants.operators import mutations
 from tests.mutants.running import ROOT, Code, judged
 
-RULE_TESTS = ("tests.rs.test_evolves", "tests.rs.test_rules")
 REMOVALS = ("drop case", "drop entry", "drop item", "old store", "drop statement", "drop if", "drop condition",
             "negate condition", "negate result", "take branch", "swap comparison", "drop operand")  # fmt: skip
 """Ways to take a rule away, the most thorough first."""
