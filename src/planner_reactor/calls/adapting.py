@@ -219,7 +219,8 @@ def _worded(mode: str, surgery: Surgery, present: list[Reaction]) -> Process:
             return wait_script(surgery)
         case "versions":
             killed = [r for r in present if r.label in surgery.kills]
-            return cond(versions_script(surgery, killed), removal_script(surgery, killed))
+            script = versions_script(surgery, killed)
+            return cond(*(operands(script) or (script,)), removal_script(surgery, killed))
         case _:
             return drain_script(surgery)
 
