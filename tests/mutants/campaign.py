@@ -26,6 +26,7 @@ RULE_TESTS = (
     "tests.rs.test_rules_of_terms",
     "tests.rs.test_rules_of_causes",
     "tests.rs.test_states",
+    "tests.rs.test_configurations",
 )
 """The tests of the rules themselves: a second in all."""
 

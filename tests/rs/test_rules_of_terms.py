@@ -231,3 +231,8 @@ def test_results_of_a_leaf_are_sorted_by_name() -> None:
 def test_n5_of_two_roots_the_first_is_decided_first_wherever_it_stands_in_it() -> None:
     assert released("(NIL & (IN[p]<x> # DRAIN[s]))", "((OUT[p, 1] # DRAIN[t]) & NIL)") == ["s", "t"]
     assert released("(NIL & (OUT[p, 1] # DRAIN[t]))", "((IN[p]<x> # DRAIN[s]) & NIL)") == ["t", "s"]
+
+
+def test_n5_only_disablings_count_for_the_depth_of_a_disabling() -> None:
+    assert released("(IN[p]<x> # DRAIN[s]) | (NIL & ((OUT[p, 1] # DRAIN[t]) | NIL))") == ["s", "t"]
+    assert released("(NIL & ((IN[p]<x> # DRAIN[s]) | NIL)) | (OUT[p, 1] # DRAIN[t])") == ["s", "t"]
