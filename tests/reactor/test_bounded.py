@@ -7,10 +7,11 @@ import os
 import pytest
 
 from planner_reactor.link.messages import Adaptation, Change
-from tests.reactor.bounded import Adapted, random_adaptations
+from planner_reactor.rs.bounds import Bounds
+from tests.reactor.bounded import Adapted, Observed, random_adaptations
 
 ADAPTATIONS = int(os.environ.get("ADAPTATIONS", "1000"))
-CHUNK, EACH = 250, 10
+CHUNK, EACH = 100, 10
 
 
 @pytest.mark.parametrize("chunk", range(max(1, ADAPTATIONS // CHUNK)))
@@ -56,3 +57,36 @@ def test_a_constructed_worst_case_takes_as_long_as_its_bound() -> None:
     assert seen.bound == 38.0  # (10 + 4) + 10 for the top, then 10 + 4 for the part that the other root asked for
     assert seen.took is not None
     assert 0.95 * seen.bound <= seen.took <= seen.bound
+
+
+def test_a_bound_that_forgets_what_is_left_behind_is_seen_to_be_too_small(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The `#` takes its ASSERT back after a second; the instance is served on, and its owner waits for it."""
+    first = Adaptation(
+        id=1,
+        definitions="""
+        P[0] = STOP :; ASSERT[top]
+        P[1] = SIT[top]<k> :; ((REASSERT[part] # Delay[1]) ; SUCCEED[top, k])
+        P[2] = SIT[part]<k> :; (Long ; SUCCEED[part, k])
+        """,
+        changes=(Change(situation="top", base=0, fresh=True), Change(situation="part", base=0, fresh=True)),
+        adds=(2, 1, 0),
+    )
+    second = Adaptation(
+        id=2,
+        definitions="P[3] = SIT[top]<k> :; (Delay[1] ; SUCCEED[top, k])",
+        changes=(Change(situation="top", base=1),),
+        kills=(1,),
+        adds=(3,),
+    )
+
+    def seen() -> Observed:
+        adapted = Adapted(first, seed=1, share=1.0)
+        adapted.run(0.0)
+        adapted.run(0.001)
+        return adapted.adapt(second)
+
+    right = seen()
+    assert right.took is not None
+    assert 0.95 * right.bound <= right.took <= right.bound == 10.0
+    monkeypatch.setattr(Bounds, "_asserts", lambda self, process: ())
+    assert seen() == Observed(1.0, None, ())  # given up at its deadline
