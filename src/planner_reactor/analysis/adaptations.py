@@ -30,7 +30,7 @@ from planner_reactor.rs.reactions import (
 from planner_reactor.rs.terms import Process, Program, Value, cond, operands
 from planner_reactor.rs.vocabulary import Signature
 
-SMALL = 500
+SMALL = 300
 """States of a slice that are looked at as a whole: a fraction of a second."""
 
 OPEN = {name: Signature(name, window=(0.0, inf)) for name in ("Works", "Asks")}
