@@ -180,3 +180,31 @@ def test_time_an_endless_window_opens_at_its_beginning() -> None:
     assert not list(steps(elapsed(config, 1.0, w), w))
     assert [s.urgent for s in steps(elapsed(config, 2.0, w), w)] == [False, False]
     assert elapsed(config, 9.0, w) == elapsed(config, 2.0, w)
+
+
+def test_kill_asks_the_whole_reaction_of_its_guard_and_nothing_beside_it() -> None:
+    cases = {
+        "E[1] # NIL # Delay[9]": False, "E[1] # Delay[9] # NIL": False, "NIL # E[1] # NIL": True,
+        "(E[1] # NIL) | Delay[9]": True, "Delay[9] | (E[1] # NIL)": True, "NIL | ((E[1] # NIL) | Delay[9])": True,
+        "NIL | ((E[1] # Delay[9]) | NIL)": False, "(NIL # E[1]) & Delay[9]": True, "Delay[9] # E[1]": False,
+    }  # fmt: skip
+    for reactor, killable in cases.items():
+        config = following(reactor, "KILL[1]", until=1)
+        assert isinstance(config.root(2), Ended) == killable, reactor
+    assert following("E[1] # NIL", "KILL[1]", until=1).root(1) == Ended(True)
+
+
+def test_the_labels_of_the_guards_steps() -> None:
+    w = world()
+
+    def labels(text: str) -> set[tuple[object, ...]]:
+        return {offer.label for offer in offers(begun(text, w=w), w)}
+
+    assert labels("KILL[1] | (E[1] # NIL)") == {("KILL", (1,), "ok", ())}
+    assert labels("RETIRE[1] | (E[1] # NIL)") == {("RETIRE", (1,), "ok", ())}
+    assert labels("RETIRE[2] | (E[1] # NIL)") == {("RETIRE", (2,), "ab", ())}
+    (refused,) = steps(begun("RETIRE[2]", w=w), w)
+    end = refused.after.root(1)
+    assert isinstance(end, Ended)
+    assert (end.ok, end.cause) == (False, "error")
+    assert labels("E[1]") == {("E", (1,), "ab", ())}
