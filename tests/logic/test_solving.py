@@ -12,7 +12,7 @@ from planner_reactor.errors import BudgetError
 from planner_reactor.logic.allen import BASES, BIT, inverse, relations
 from planner_reactor.logic.network import Network
 from planner_reactor.logic.problems import Apart, Capacity, Lasts, Lies, Statement, Uses
-from planner_reactor.logic.solving import Answer, solve
+from planner_reactor.logic.solving import Answer, closure, solve
 from tests.logic import worlds
 from tests.logic.worlds import Relations, fitting, relation_of
 
@@ -235,6 +235,29 @@ def test_metric_verdicts_are_those_of_brute_force() -> None:
             assert solve([said[n] for n in answer.core]).times is None
         verdicts.append(truth)
     assert 30 < sum(verdicts) < 120
+
+
+def test_before_leaves_a_gap_however_small() -> None:
+    """Between a and c there are 7 s, and x lasts 7 s: it meets both, and is not before or after them."""
+    gap = Apart(first=("a", 1), second=("c", 0), least=7000, most=7000)
+    lasts = Lasts(interval="x", least=7000, most=7000)
+    assert solve([gap, lasts, lies_text("a", "m", "x"), lies_text("x", "m", "c")]).times is not None
+    assert solve([gap, lasts, lies_text("a", "b", "x"), lies_text("x", "b m", "c")]).core == (0, 1, 2, 3)
+
+
+def test_what_durations_rule_out_is_known_by_propagation() -> None:
+    lasting = [Lasts(interval="i", least=5, most=6), Lasts(interval="j", least=2, most=4)]
+    said = [*lasting, lies_text("i", "d s di e b", "j")]
+    assert closure(said) == [("i", relations(["di", "b"]), "j")]
+    assert closure([*said, lies_text("j", "di si e", "i")]) is None
+
+
+def test_what_relations_say_bounds_durations() -> None:
+    """A task within another is no longer than it, and with what precedes it there it is shorter."""
+    said: list[Statement] = [lies_text("i", "d", "day"), lies_text("j", "d", "day"), lies_text("i", "b m", "j")]
+    said += [Lasts(interval="i", least=3, most=None), Lasts(interval="j", least=4, most=None)]
+    assert solve([*said, Lasts(interval="day", least=0, most=7)]).core == (0, 1, 2, 3, 4, 5)
+    assert solve([*said, Lasts(interval="day", least=0, most=7.001)]).times is not None
 
 
 def test_inverse_statements_say_the_same() -> None:
