@@ -57,7 +57,7 @@ def test_a_statement_that_no_program_passes_is_missing() -> None:
         coverage.close()
     missing = coverage.missing()
     assert ("operator", "&", "stop") in missing
-    assert any(place == "leaves.drain" for place, _, _ in missing)
+    assert any(place == "serving.drain" for place, _, _ in missing)
     assert ("operator", ":", "stop") not in missing
 
 

@@ -26,8 +26,8 @@ from planner_reactor.reactor.laws import CHECKED
 from planner_reactor.rs import checks
 from planner_reactor.rs.checks import check_addition
 from planner_reactor.rs.grammar import EXPRESSION_OPERATORS, PREFIX_MINUS, PROCESS_OPERATORS
-from planner_reactor.rs.leaves import RULES
 from planner_reactor.rs.parser import parse_program
+from planner_reactor.rs.serving import RULES
 from planner_reactor.rs.terms import Program
 from planner_reactor.rs.vocabulary import BUILT_IN, NEVER_ENDS, Signature
 from tests.pages import DOCS, MADE, OWN, PACKAGE, PAGES, ROOT, Block, anchors, blocks, links, made_anew, rows

@@ -1,7 +1,7 @@
 """What random programs pass through: every statement of the semantics, and every operator with every outcome.
 
-A `Coverage` puts a counter before each statement of `rs.evolves`, `rs.leaves` and `rs.store`, in the functions as they
-stand in the running process, and notes each composition that is decided, with its outcome. What there is to be
+A `Coverage` puts a counter before each statement of `rs.evolves`, `leaves`, `serving` and `store`, in the functions as
+they stand in the running process, and notes each composition that is decided, with its outcome. What there is to be
 covered is read off the sources: a rule added to them is a row at once. Rows that no run can pass are in `ELSEWHERE`.
 """
 
@@ -15,10 +15,10 @@ from pathlib import Path
 from types import CodeType, FunctionType, ModuleType
 from typing import Any
 
-from planner_reactor.rs import evolves, leaves, store
+from planner_reactor.rs import evolves, leaves, serving, store
 from planner_reactor.rs.states import Chain, Deciding, Ended, Export, Group, Inverted, Round, Serve, Spawning, Testing
 
-SEMANTICS = (evolves, leaves, store)
+SEMANTICS = (evolves, leaves, serving, store)
 IDS = re.compile(r"\b(N\d+'?|SEQ|PAR|COM|TIME)(?![\w'])")
 
 Row = tuple[str, str, str]

@@ -25,7 +25,8 @@ from planner_reactor.analysis.renaming import renamed, unknowns_of
 from planner_reactor.rs.configurations import Config, Ending, Label, World
 from planner_reactor.rs.constraints import consistent, projected
 from planner_reactor.rs.evolves import settle, started
-from planner_reactor.rs.leaves import MEETINGS, PASSIVE, RULES, Offer, elapsed, offers_of, urgent, window
+from planner_reactor.rs.leaves import MEETINGS, PASSIVE, Offer, elapsed, offers_of, urgent, window
+from planner_reactor.rs.serving import RULES
 from planner_reactor.rs.states import Ended, Leaf, Spot
 from planner_reactor.rs.terms import Process, Value
 from planner_reactor.rs.unknowns import Compared, Constraint, Symbolic, Unknown, courses

@@ -26,7 +26,8 @@ from planner_reactor.analysis.explore import canonical
 from planner_reactor.errors import BudgetError
 from planner_reactor.rs.configurations import Config, Label, World
 from planner_reactor.rs.evolves import started
-from planner_reactor.rs.leaves import RULES, elapsed, offers, resting, slack, window
+from planner_reactor.rs.leaves import elapsed, offers, resting, slack, window
+from planner_reactor.rs.serving import RULES
 from planner_reactor.rs.states import Await, Ended, InstanceNumber, Leaf, Run, Waiting, parts_of, spots
 from planner_reactor.rs.store import Store
 from planner_reactor.rs.terms import Process, Value

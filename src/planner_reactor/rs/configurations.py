@@ -22,6 +22,10 @@ Functions: TypeAlias = Mapping[str, Callable[..., Value]]
 Label: TypeAlias = tuple[str, tuple[Value, ...], str, tuple[Value, ...]]
 """(name, arguments, "ok" | "ab" | "wait", values): what an observer of a step sees."""
 
+OK = "ok"
+AB = "ab"
+WAITS = "wait"
+
 Ending: TypeAlias = tuple[bool, tuple[Value, ...]]
 Oracle: TypeAlias = Callable[[str, tuple[Value, ...]], Iterable[Ending]]
 """How a basic process may end, with which values: concrete runs are deterministic but for this."""

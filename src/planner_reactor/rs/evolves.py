@@ -1,14 +1,13 @@
 """evolves: the one readable statement of what RS means, on concrete values.
 
-R §4.4 and X App. B define `P -c-> Q`; docs/language.md closes their gaps. The rules stand here in the order of
-that page, one case each, with their ids: first the termination rules N1 to N10 (silent: they belong to the
-step that ends a component), then the transitions SEQ, PAR, COM, TIME; what each built-in leaf does is in
-`leaves`. The executer is an optimised interpreter of these rules and is held against them; `analysis`
-explores them.
+R §4.4 and X App. B define `P -c-> Q`; docs/language.md closes their gaps. The rules stand here in the order of that
+page, one case each, with their ids: first the termination rules N1 to N10 (silent: they belong to the step that ends a
+component), then the transitions SEQ, PAR, COM, TIME; what each leaf does is in `leaves` and `serving`. The executer is
+an optimised interpreter of these rules and is held against them; `analysis` explores them.
 
-A configuration is a tuple of roots (a program, or a reactor and the scripts that change it) over one store.
-After a step everything settles: endings and the store's consequences first, then, innermost first and
-leftmost among equals, the `#`s of which a part has ended.
+A configuration is a tuple of roots (a program, or a reactor and the scripts that change it) over one store. After a
+step everything settles: endings and the store's consequences first, then, innermost first and leftmost among equals,
+the `#`s of which a part has ended.
 """
 
 from __future__ import annotations
@@ -72,18 +71,16 @@ UNFOLDING_LIMIT = 100
 def started(
     process: Process, world: World, *, config: Config | None = None, scope: Bindings = (), number: int = 0
 ) -> Config:
-    """A configuration in which a new root runs this process beside those of `config`; its `number` is the next free."""
+    """A configuration in which a new root, the next if no `number` is given, runs this process beside `config`."""
     config = config or Config()
     number = number or max((n for n, _ in config.roots), default=0) + 1
-    term = begin(process, scope, world)
-    return settle(replace(config, roots=(*config.roots, (number, term))), world)
+    return settle(replace(config, roots=(*config.roots, (number, begin(process, scope, world)))), world)
 
 
 def killed(config: Config, root: int, world: World) -> Config:
     """N9 for a whole root, which somebody outside aborts."""
-    store = abort(config.root(root), config.store, root)
-    over = Ended(False, cause="cancelled")
-    return settle(Config(tuple((n, over if n == root else t) for n, t in config.roots), store), world)
+    roots = tuple((n, Ended(False, cause="cancelled") if n == root else t) for n, t in config.roots)
+    return settle(Config(roots, abort(config.root(root), config.store, root)), world)
 
 
 # ---------------------------------------------------------------------------------------------- coming to life

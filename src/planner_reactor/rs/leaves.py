@@ -17,18 +17,16 @@ from msgspec.structs import replace
 
 from planner_reactor.errors import Place
 from planner_reactor.rs.comparisons import TESTS
-from planner_reactor.rs.configurations import Config, Label, World
+from planner_reactor.rs.configurations import AB, OK, Config, Label, World
 from planner_reactor.rs.evolves import settle
 from planner_reactor.rs.expressions import is_number
+from planner_reactor.rs.serving import RULES
 from planner_reactor.rs.states import (
     Await,
-    Bindings,
-    Delivered,
     Ended,
     Group,
     Leaf,
     Queued,
-    Reaction,
     Round,
     Run,
     Serve,
@@ -36,8 +34,8 @@ from planner_reactor.rs.states import (
     Spot,
     Testing,
     Waiting,
-    bind,
     parts_of,
+    results_of,
     with_parts,
 )
 from planner_reactor.rs.store import Store
@@ -53,16 +51,10 @@ class Step(msgspec.Struct, frozen=True):
     urgent: bool = True
 
 
-Result: TypeAlias = tuple[str, tuple[Value, ...], Run, Store]
-Rule: TypeAlias = Callable[[Leaf, Spot, Store, World], Result | None]
 Meeting: TypeAlias = "Callable[[Spot, Leaf, list[Spot], Config], Iterator[Offer]]"
 
 TIE = 1e-8
 """Seconds within which two instants are one: ages are rounded to nine places."""
-
-OK = "ok"
-AB = "ab"
-WAITS = "wait"
 
 
 class Offer(msgspec.Struct, frozen=True):
@@ -125,7 +117,7 @@ def _communicated(writer: Spot, leaf: Leaf, spots: list[Spot], config: Config) -
     """COM. `p!v` meets `p?v`: one reader per write; any ready pair may meet."""
     port, value = leaf.arguments
     for reader, wanted in _named(spots, "IN", (port,)):
-        changes = ((writer, Ended(True)), (reader, Ended(True, _results(wanted, (value,)))))
+        changes = ((writer, Ended(True)), (reader, Ended(True, results_of(wanted, (value,)))))
         yield Offer(("COM", (port, value), OK, ()), changes, config.store)
 
 
@@ -174,7 +166,7 @@ def _ended(spot: Spot, leaf: Leaf, store: Store, world: World) -> Iterator[Offer
     if not (_reached(leaf.age, low) and _reached(high, leaf.age)):
         return
     for ok, values in _endings(leaf, world):
-        term = Ended(ok, _results(leaf, values), "" if ok else "error" if _mistaken(leaf, world) else "failed")
+        term = Ended(ok, results_of(leaf, values), "" if ok else "error" if _mistaken(leaf, world) else "failed")
         label = (leaf.name, leaf.arguments, OK if ok else AB, values)
         yield Offer(label, ((spot, term),), store, _reached(leaf.age, high))
 
@@ -195,10 +187,6 @@ def _endings(leaf: Leaf, world: World) -> Iterator[tuple[bool, tuple[Value, ...]
         yield False, ()
     else:
         yield from world.endings(leaf.name, leaf.arguments)
-
-
-def _results(leaf: Leaf, values: tuple[Value, ...]) -> Bindings:
-    return bind(tuple(zip(leaf.results, values, strict=False)))
 
 
 def slack(config: Config, world: World) -> float:
@@ -232,124 +220,6 @@ def _older(term: Run, seconds: float, world: World) -> Run:
     return term if all(new is old for new, old in zip(older, parts, strict=True)) else with_parts(term, older)
 
 
-# -------------------------------------------------------------------------------------------------- situations
-
-
-def assert_(leaf: Leaf, spot: Spot, store: Store, world: World) -> Result | None:
-    """ASSERT, REASSERT: a new instance, owned by the instance whose body this is."""
-    situation, *rest = leaf.arguments
-    if not isinstance(situation, str):
-        return AB, (), Ended(False, cause="error"), store
-    arguments = tuple(rest)
-    if store.gone(spot.owner):
-        return AB, (), Ended(False, cause="withdrawn"), store
-    if situation not in world.spawned and store.above(spot.owner, situation):
-        return AB, (), Ended(False, cause="error"), store
-    if store.holds_back(situation):
-        store, ticket = store.queued(situation, arguments, spot.owner)
-        return WAITS, (), Queued(ticket, leaf), store
-    store, number = store.asserted(situation, arguments, spot.owner)
-    return WAITS, (), Await(number, leaf.results, leaf if leaf.name == "REASSERT" else None), store
-
-
-def sit(leaf: Leaf, spot: Spot, store: Store, world: World) -> Result | None:
-    """SIT: deliver the least recently served instance that this reaction may serve."""
-    situation = str(leaf.arguments[0])
-    reaction = Reaction(spot.guard, leaf.site)
-    instance = store.available(situation, reaction)
-    if instance is None:
-        return None
-    values = (instance.number, *instance.arguments)
-    bindings = _results(leaf, values)
-    store = store.stamped(instance.number, reaction)
-    if leaf.opens:
-        return OK, values, Delivered(situation, instance.number, reaction, bindings), store
-    return OK, values, Ended(True, bindings), store
-
-
-def succeed(leaf: Leaf, spot: Spot, store: Store, world: World) -> Result | None:
-    return OK, (), Ended(True), _ended_instance(leaf, store, ok=True)
-
-
-def fail(leaf: Leaf, spot: Spot, store: Store, world: World) -> Result | None:
-    return OK, (), Ended(True), _ended_instance(leaf, store, ok=False)
-
-
-def _ended_instance(leaf: Leaf, store: Store, *, ok: bool) -> Store:
-    situation, number = leaf.arguments
-    instance = store.get(number) if isinstance(number, int) else None
-    return store.ended(instance.number, ok=ok) if instance and instance.situation == situation else store
-
-
-def update(leaf: Leaf, spot: Spot, store: Store, world: World) -> Result | None:
-    """UPDATE[s,k,v…]: the values that ASSERT will return."""
-    situation, number, *values = leaf.arguments
-    instance = store.get(number) if isinstance(number, int) else None
-    if instance and instance.situation == situation and instance.status == "on":
-        store = store.changed(instance.number, values=tuple(values))
-    return OK, (), Ended(True), store
-
-
-def wait(leaf: Leaf, spot: Spot, store: Store, world: World) -> Result | None:
-    """WAIT, WAITINHIBIT: their start; granted inside the step that makes the situation quiescent."""
-    return WAITS, (), Waiting(leaf.name, str(leaf.arguments[0])), store
-
-
-def drain(leaf: Leaf, spot: Spot, store: Store, world: World) -> Result | None:
-    situation = str(leaf.arguments[0])
-    return WAITS, (), Waiting("DRAIN", situation), store.drain(situation, spot.root)
-
-
-def renew(leaf: Leaf, spot: Spot, store: Store, world: World) -> Result | None:
-    """RENEW[s]: from here on instances of s are of the next version, and reactions serve the versions they know."""
-    return OK, (), Ended(True), store.renewed(str(leaf.arguments[0]))
-
-
-def wait_old(leaf: Leaf, spot: Spot, store: Store, world: World) -> Result | None:
-    """WAITOLD[s]: its start; granted inside the step that ends the last instance of an older version."""
-    situation = str(leaf.arguments[0])
-    return WAITS, (), Waiting("WAITOLD", situation, store.version(situation)), store
-
-
-def inhibit(leaf: Leaf, spot: Spot, store: Store, world: World) -> Result | None:
-    return OK, (), Ended(True), store.inhibit(str(leaf.arguments[0]), spot.root, "inhibit")
-
-
-def uninhibit(leaf: Leaf, spot: Spot, store: Store, world: World) -> Result | None:
-    return OK, (), Ended(True), store.uninhibit(str(leaf.arguments[0]), spot.root)
-
-
-def disable(leaf: Leaf, spot: Spot, store: Store, world: World) -> Result | None:
-    """What a failed assumption does to a situation that rests on it."""
-    situation, assumption = str(leaf.arguments[0]), str(leaf.arguments[1])
-    owner = ("assumption", assumption)
-    if any(h.situation == situation and h.owner == owner for h in store.inhibitions):
-        return OK, (), Ended(True), store
-    return OK, (), Ended(True), store.inhibit(situation, owner, "assumption")
-
-
-def enable(leaf: Leaf, spot: Spot, store: Store, world: World) -> Result | None:
-    situation, assumption = str(leaf.arguments[0]), str(leaf.arguments[1])
-    return OK, (), Ended(True), store.uninhibit(situation, ("assumption", assumption))
-
-
-def stub(leaf: Leaf, spot: Spot, store: Store, world: World) -> Result | None:
-    """STUB[s]: the failure that follows is known to come from a placeholder."""
-    return OK, (), Ended(True), store if spot.owner is None else store.changed(spot.owner, stub=True)
-
-
-def report(leaf: Leaf, spot: Spot, store: Store, world: World) -> Result | None:
-    return OK, (), Ended(True), store
-
-
-def monitor(leaf: Leaf, spot: Spot, store: Store, world: World) -> Result | None:
-    """ASSUMONITOR, HOLDMONITOR: what they sense is no step; without a period they abort."""
-    period = leaf.arguments[1]
-    if is_number(period) and period > 0:  # type: ignore[operator]  # a number
-        return None
-    return AB, (), Ended(False, cause="error"), store
-
-
 # ------------------------------------------------------------------------------------------------------ guards
 
 
@@ -360,7 +230,7 @@ def _posted(poster: Spot, leaf: Leaf, spots: list[Spot], config: Config) -> Iter
         yield Offer(("POST", (label,), AB, ()), ((poster, Ended(False, cause="error")),), config.store)
         return
     for adder, wanted in _named(spots, "ADD", ()):
-        changes = ((poster, Ended(True)), (adder, Ended(True, _results(wanted, (label,)))))
+        changes = ((poster, Ended(True)), (adder, Ended(True, results_of(wanted, (label,)))))
         yield Offer(("POST", (label,), OK, ()), changes, config.store.posted(label))
 
 
@@ -431,29 +301,13 @@ def resting(term: Run, *, sensing: bool | None = None) -> bool:
             return all(resting(p, sensing=sensing) for p in parts_of(term))
 
 
-RULES: dict[str, Rule] = {
-    "ASSERT": assert_,
-    "REASSERT": assert_,
-    "SIT": sit,
-    "SUCCEED": succeed,
-    "FAIL": fail,
-    "UPDATE": update,
-    "WAIT": wait,
-    "WAITINHIBIT": wait,
-    "DRAIN": drain,
-    "RENEW": renew,
-    "WAITOLD": wait_old,
-    "INHIBIT": inhibit,
-    "UNINHIBIT": uninhibit,
-    "DISABLE": disable,
-    "ENABLE": enable,
-    "STUB": stub,
-    "REPORT": report,
-    "ASSUMONITOR": monitor,
-    "HOLDMONITOR": monitor,
+MEETINGS: dict[str, Meeting] = {
+    "OUT": _communicated,
+    "POST": _posted,
+    "KILL": _killed,
+    "RETIRE": _retired,
+    "E": _guarding,
 }
-
-MEETINGS: dict[str, Meeting] = {"OUT": _communicated, "POST": _posted, "KILL": _killed, "RETIRE": _retired, "E": _guarding}
 
 PASSIVE = frozenset({"NIL", "IN", "ADD"})
 """Leaves that have no step of their own."""

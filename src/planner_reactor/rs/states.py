@@ -384,3 +384,8 @@ def variables(process: Process) -> frozenset[str]:
 def leaf_of(call: Call, arguments: tuple[Value, ...] = (), *, problem: str = "") -> Leaf:
     """The leaf that a call of a basic or built-in process becomes."""
     return Leaf(call.name, arguments, call.results, site=call.place, problem=problem)
+
+
+def results_of(leaf: Leaf, values: tuple[Value, ...]) -> Bindings:
+    """What a leaf binds that ends with these values."""
+    return bind(tuple(zip(leaf.results, values, strict=False)))
