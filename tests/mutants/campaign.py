@@ -27,6 +27,7 @@ RULE_TESTS = (
     "tests.rs.test_rules_of_causes",
     "tests.rs.test_states",
     "tests.rs.test_configurations",
+    "tests.rs.test_resting",
 )
 """The tests of the rules themselves: a second in all."""
 

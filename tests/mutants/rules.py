@@ -27,9 +27,10 @@ FUNCTIONS = {
         "Step": "TIME",
     },
     "serving": {
-        "": "leaves", "assert_": "ASSERT", "sit": "SIT", "succeed": "SUCCEED", "fail": "FAIL",
-        "_ended_instance": "SUCCEED", "update": "UPDATE", "wait": "WAIT", "drain": "DRAIN", "inhibit": "INHIBIT",
-        "uninhibit": "UNINHIBIT", "disable": "DISABLE", "enable": "ENABLE", "stub": "STUB", "report": "REPORT",
+        "assert_": "ASSERT", "sit": "SIT", "succeed": "SUCCEED", "fail": "FAIL", "_ended_instance": "SUCCEED",
+        "update": "UPDATE", "wait": "WAIT", "drain": "DRAIN", "renew": "RENEW", "wait_old": "WAITOLD",
+        "inhibit": "INHIBIT", "uninhibit": "UNINHIBIT", "disable": "DISABLE", "enable": "ENABLE",
+        "disabled": "DISABLE", "enabled": "ENABLE", "stub": "STUB", "report": "REPORT", "monitor": "ASSUMONITOR",
     },
     "store": {
         "Instance": "ASSERT", "Inhibition": "INHIBIT", "QueuedAssert": "ASSERT", "Store": "ASSERT",
