@@ -115,8 +115,8 @@ class Duration(msgspec.Struct, frozen=True):
 
 @dataclass(frozen=True, slots=True)
 class Resource:
-    """What only so many can use at one time: an arm, a camera, the slots of a tray (then with parameters:
-    each tray has slots of its own).
+    """What only so many can use at one time: a crane, a tap, the places of a shelf (then with parameters:
+    each shelf has places of its own).
     """
 
     name: str

@@ -89,7 +89,7 @@ class ResourceNode(msgspec.Struct, frozen=True):
 
 
 class DemandNode(msgspec.Struct, frozen=True):
-    """`arm`, `slots(t) 2`: what an action takes of a resource."""
+    """`crane`, `places(s) 2`: what an action takes of a resource."""
 
     resource: Name
     arguments: tuple[Name, ...]
