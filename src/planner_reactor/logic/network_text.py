@@ -3,8 +3,8 @@
     i1 (b m o) i2                                  how they lie; also [b, m, o], b, meets
     i1 lasts 3000 .. 5000                          how long, in milliseconds; also 3000, or 3000 ..
     start of i2 after end of i1 0 .. 2000          how far apart end points are; negative is before
-    i1 uses crane 1                                  what it takes of a resource; 1 if not said
-    resource crane 2                                how much there is of it; 1 if not said
+    i1 uses crane 1                                what it takes of a resource; 1 if not said
+    resource crane 2                              how much there is of it; 1 if not said
 
 Several statements for one pair narrow each other, `//` and `#` begin a comment. A contradiction is not an error of the
 text.
