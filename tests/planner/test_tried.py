@@ -79,7 +79,7 @@ def test_a_slot_is_looked_at_before_the_part_is_fetched_unless_others_may_fill_i
 def test_every_set_of_assumptions_can_be_planned_for(path: object) -> None:
     """All 2⁹, in an order in which one assumption is relaxed or reinstated at a time."""
     domain = reinstatable(path)  # type: ignore[arg-type]
-    planner, book = Planner(domain, relax=()), Book(domain, loads=False)
+    planner, book = Planner(domain, relax=(), verify=path == KITTING), Book(domain, loads=False)
     settle(planner, book)
     reactors = {tuple(sorted(texts(planner).items()))}
     for n in range(1, 512):
@@ -108,7 +108,7 @@ def test_planning_in_increments_and_anew_agree(path: object) -> None:
     known: dict[frozenset[str], object] = {}
     for seed in range(12):
         rng = random.Random(seed)
-        planner, book = Planner(domain, relax=()), Book(domain)
+        planner, book = Planner(domain, relax=(), verify=path == KITTING), Book(domain)
         waiting: list[object] = []
         for _ in range(rng.randrange(3, 10)):
             disturb(planner, book, waiting, rng)

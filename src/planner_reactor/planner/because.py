@@ -8,7 +8,7 @@ import msgspec
 
 Trigger: TypeAlias = Literal[
     "goal", "caller", "context", "normal", "forced", "reinstated", "stub_trigger", "situation_failure", "information",
-    "impossible", "adaptation_refused", "adaptation_timed_out", "domain",
+    "impossible", "adaptation_refused", "adaptation_timed_out", "domain", "withdrawn",
 ]  # fmt: skip
 
 _SAID: dict[Trigger, str] = {
@@ -24,7 +24,8 @@ _SAID: dict[Trigger, str] = {
     "impossible": "there is no plan for {}",
     "adaptation_refused": "adaptation {} was refused",
     "adaptation_timed_out": "adaptation {} took too long",
-    "domain": "{} is another text now",
+    "domain": "there is another text, {}",
+    "withdrawn": "{} is no longer a goal",
 }
 
 

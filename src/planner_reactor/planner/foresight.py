@@ -46,10 +46,12 @@ class Foresight:
     def _without(self, beliefs: Beliefs) -> Reducer:
         self.foreseen.add(beliefs)
         actual = self.reducer
-        issuer = Issuer(Model(actual.model.root), actual.issuer.fold, actual.issuer.stub_ms, None, actual.issuer.mode)
+        issuer = Issuer(Model(), actual.issuer.fold, actual.issuer.stub_ms, None, actual.issuer.mode)
         issuer.sheets.share(actual.issuer.sheets)
         assuming = Assuming(actual.theory.domain, "none")
         assuming.beliefs = beliefs
-        shadow = Reducer(actual.goal, actual.theory, issuer.model, issuer, assuming, Counter())
+        shadow = Reducer(actual.theory, issuer.model, issuer, assuming, Counter())
         shadow.memory = actual.memory
+        for root in actual.model.roots:
+            shadow.pursue(root.schema)
         return shadow

@@ -38,6 +38,7 @@ class UnderWay(msgspec.Struct, frozen=True):
     touched: frozenset[Situation]
     before: tuple[tuple[Situation, Segment | None], ...]
     monitors: dict[Monitor, int]
+    withdrawn: tuple[Situation, int | None] | None = None  # a goal, and the label of what asserted it
 
 
 class Difference(msgspec.Struct, frozen=True):
@@ -119,8 +120,8 @@ class Issuer:
         told = segment.required
         used = frozenset(model.uses)
         parts = _Parts()
-        if first and segment.situation == model.root:
-            self._add(parts, show(reactions.root(segment.situation, model.names)))
+        if first and segment.situation in model.roots:
+            model.roots[segment.situation] = self._add(parts, show(reactions.root(segment.situation, model.names)))
         model.put(segment, refinement)
         if not same:
             self._replace(parts, segment, text)
@@ -140,6 +141,28 @@ class Issuer:
         monitors = dict(self.monitors)
         self._watch(parts, beliefs, {a: n for a, n in holding.items() if a not in model.uses})
         return self._send(parts, draft, difference.touched, before, monitors, used)
+
+    def withdraw(self, root: Situation, beliefs: Beliefs, holding: Mapping[str, int]) -> Adaptation | None:
+        """An adaptation that takes a goal away, with all that stands for it alone; None if something holds it."""
+        gone = self.model.left_by(root)
+        touched = frozenset(s.situation for s in gone)
+        if self.holder(touched) is not None:
+            return None
+        parts, monitors, used = _Parts(), dict(self.monitors), frozenset(self.model.uses)
+        before = tuple(self.model.snapshot([s.situation for s in gone]))
+        label = self.model.roots.pop(root)
+        parts.kills += [label] if label is not None else []
+        for segment in gone:
+            parts.kills += [segment.label] if segment.label is not None else []
+            parts.removed.append(segment.name)
+            self.model.remove(segment)
+        self._watch(parts, beliefs, {a: n for a, n in holding.items() if a not in self.model.uses})
+        adaptation = self._send(parts, None, touched, before, monitors, used, f"withdraw goal {root.schema}")
+        assert adaptation is not None  # the goal's own reaction goes, at least
+        self.under_way[adaptation.id] = msgspec.structs.replace(
+            self.under_way[adaptation.id], withdrawn=(root, label)
+        )
+        return adaptation
 
     def reconcile(
         self, beliefs: Beliefs, holding: Mapping[str, int], asked: Mapping[Atom, Action]
@@ -232,6 +255,7 @@ class Issuer:
         before: tuple[tuple[Situation, Segment | None], ...],
         monitors: dict[Monitor, int],
         used: frozenset[str],
+        purpose: str = "monitors and requests",
     ) -> Adaptation | None:
         if not (parts.changes or parts.kills or parts.adds):
             return None
@@ -245,7 +269,7 @@ class Issuer:
             kills=tuple(parts.kills),
             adds=tuple(reversed(parts.adds)),
             mode=self.mode,
-            purpose=draft.purpose if draft else "monitors and requests",
+            purpose=draft.purpose if draft else purpose,
             drops=tuple(sorted(used - after)) if used != after else (),
             adopts=tuple(sorted(after - used)) if used != after else (),
         )
@@ -283,7 +307,7 @@ class Issuer:
         if flight is None:
             return None
         self._release(flight)
-        self.refused_alone += flight.segment is None
+        self.refused_alone += flight.segment is None and flight.withdrawn is None
         self._watched = None
         self.model.restore(flight.before)
         mine = set(flight.adaptation.adds)
@@ -292,6 +316,10 @@ class Issuer:
                 del self.monitors[monitor]
         old = {label: monitor for monitor, label in flight.monitors.items()}
         segments = {segment.label for _, segment in flight.before if segment is not None}
+        if flight.withdrawn is not None:
+            root, asserting = flight.withdrawn
+            self.model.roots[root] = asserting
+            segments.add(asserting)
         for label in flight.adaptation.kills:
             if label in old and old[label] not in self.monitors:
                 self.monitors[old[label]] = label

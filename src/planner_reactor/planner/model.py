@@ -85,9 +85,9 @@ class Drafted:
 
 @dataclass(slots=True)
 class Model:
-    """All segments, in the order in which they came up."""
+    """All segments, in the order in which they came up. `roots` are the goals, with the labels of what asserts them."""
 
-    root: Situation
+    roots: dict[Situation, int | None] = field(default_factory=dict)
     names: Names = field(default_factory=Names)
     segments: dict[Situation, Segment] = field(default_factory=dict)
     uses: dict[str, int] = field(default_factory=dict)  # assumption → segments that rest on it or bring it in
@@ -166,7 +166,7 @@ class Model:
         waiting = list(dict.fromkeys(situations))
         while waiting:
             segment = self.segments.get(waiting.pop(0))
-            if segment is None or segment.situation == self.root:
+            if segment is None or segment.situation in self.roots:
                 continue
             context = self.context(segment.situation)
             if context == segment.context:
@@ -197,6 +197,17 @@ class Model:
                 leaving.add(situation)
                 waiting.extend(child.situation for child in own.children)
         return gone
+
+    def left_by(self, root: Situation) -> list[Segment]:
+        """What nothing asserts any more once this goal is gone; top-down."""
+        kept: set[Situation] = set()
+        waiting = [r for r in self.roots if r != root]
+        while waiting:
+            segment = self.segments.get(waiting.pop())
+            if segment is not None and segment.situation not in kept:
+                kept.add(segment.situation)
+                waiting.extend(child.situation for child in segment.children)
+        return sorted((s for s in self if s.situation not in kept), key=lambda s: s.path)
 
     def used(self) -> list[str]:
         """The assumptions in use."""

@@ -18,7 +18,7 @@ from collections.abc import Mapping
 from msgspec.structs import replace
 
 from planner_reactor.analysis.adaptations import Environment
-from planner_reactor.errors import InputError
+from planner_reactor.errors import InputError, nearest
 from planner_reactor.link.messages import Mode, Perception
 from planner_reactor.logic.domain import Domain
 from planner_reactor.logic.formulas import Atom
@@ -33,7 +33,6 @@ from planner_reactor.planner.model import Model
 from planner_reactor.planner.reducing import Reducer
 from planner_reactor.planner.relaxing import Assuming
 from planner_reactor.planner.sensing import observer_of
-from planner_reactor.planner.situations import Situation
 from planner_reactor.planner.steps import Cause, Relax, Relaxation, Step
 from planner_reactor.planner.theory import Theory
 from planner_reactor.planner.verifying import Gate, reason
@@ -68,7 +67,7 @@ class Planner:
     ) -> None:
         self.domain = domain
         self.goal = chosen_goal(domain, goal)
-        self.model = Model(Situation(self.goal))
+        self.model = Model()
         self.patience = patience
         self._counts: Counter[str] = Counter()
         self._failures: Counter[str] = Counter()
@@ -76,7 +75,8 @@ class Planner:
         self._issuer = Issuer(self.model, fold, stub_ms, period_ms, mode, epoch)
         self._gate = Gate(mode=mode) if verify else None
         self._withheld: dict[int, str] = {}
-        self._reducer = Reducer(self.goal, Theory(domain), self.model, self._issuer, self._assuming, self._counts)
+        self._reducer = Reducer(Theory(domain), self.model, self._issuer, self._assuming, self._counts)
+        self._reducer.pursue(self.goal)
         self._foresight = Foresight(self._reducer) if foresight else None
 
     # ------------------------------------------------------------------------------------- what it tells
@@ -99,9 +99,7 @@ class Planner:
     @property
     def expectation(self) -> tuple[str, ...]:
         """The situations that are not yet as the ω-ideal reactor has them (E_t)."""
-        if not self._reducer.has_begun:
-            return () if self._reducer.is_done else (self.goal,)
-        return tuple(segment.name for segment in self.model if segment.is_open)
+        return tuple(segment.name for segment in self._reducer.segments if segment.is_open)
 
     @property
     def ideal(self) -> bool:
@@ -152,6 +150,37 @@ class Planner:
         if not 0 < adaptation < self._issuer.next_id:
             raise InputError(f"no adaptation {adaptation}, the last is {self._issuer.next_id - 1}")
         return Explanation(adaptation, "monitors and requests", (), ())
+
+    # ----------------------------------------------------------------------------------- goals at run time
+
+    @property
+    def goals(self) -> tuple[str, ...]:
+        """The goals that are pursued, in the order in which they were given."""
+        leaving = self._reducer.leaving
+        return tuple(root.schema for root in self.model.roots if root not in leaving)
+
+    def pursue(self, goal: str) -> None:
+        """Pursue this goal of the domain, too, from now on; what the others need goes on meanwhile."""
+        self._reducer.pursue(chosen_goal(self.domain, goal))
+
+    def withdraw(self, goal: str) -> None:
+        """Pursue this goal no more: what stands for it alone is taken away, once it is at rest."""
+        if goal not in self.goals:
+            raise InputError(f"{goal} is not pursued, {nearest(goal, self.goals) or f'but {self.goals}'}")
+        self._reducer.withdraw(goal, Because("withdrawn", goal))
+
+    def adopt(self, domain: Domain) -> None:
+        """Plan with another text from now on: other rules, facts, goals, likelihoods, further actions and assumptions.
+
+        What it makes different is adapted, piece by piece; all else goes on. The actions that there are must need
+        what they needed before (InputError): reactions in place rest on that.
+        """
+        _must_follow(domain, self.domain, self.goals)
+        self.domain = domain
+        self._assuming.adopt(domain)
+        if self._foresight is not None:
+            self._foresight = Foresight(self._reducer)
+        self._reducer.adopt(Theory(domain), Because("domain", domain.file))
 
     def meet(self, environment: Environment) -> None:
         """What is known of the basic processes from now on: bounds of adaptations are numbers."""
@@ -293,3 +322,18 @@ class Planner:
             self._assuming.beliefs = self._assuming.beliefs.learning(atom, holds=verdict == "holds")
             self._issuer.requests.pop(atom, None)
             self._reducer.reconsider(Because("information", str(atom), perception.number), atom)
+
+
+def _must_follow(domain: Domain, before: Domain, goals: tuple[str, ...]) -> None:
+    """Can this text take the place of that one while reactions of that one are at work?"""
+    for goal in goals:
+        chosen_goal(domain, goal)
+    for name in before.assumptions:
+        if name not in domain.assumptions:
+            raise InputError(f"{domain.file}: no assumption {name}, and reactions in place may rest on it")
+    for name, schema in before.schemas.items():
+        other = domain.schemas.get(name)
+        if other is None or (other.inputs, other.outputs, len(other.executability)) != (
+            schema.inputs, schema.outputs, len(schema.executability),
+        ):  # fmt: skip
+            raise InputError(f"{domain.file}: action {name} takes, gives or needs something else than before")

@@ -40,9 +40,10 @@ UNITS = 24
 
 @dataclass(slots=True)
 class Reducer:
-    """Brings the model in line with the assumptions held. `start` is the root before it is in the model."""
+    """Brings the model in line with the goals and the assumptions held. `starts` are goals that are not in the
+    model yet, `leaving` those that are to go.
+    """
 
-    goal: str
     theory: Theory
     model: Model
     issuer: Issuer
@@ -51,37 +52,96 @@ class Reducer:
     convergence: Convergence = field(default_factory=Convergence)
     records: dict[int, Record] = field(default_factory=dict)  # of the last adaptations, to be explained
     memory: Memory = field(init=False)
-    start: Segment = field(init=False)
-    _root: ActionSchema = field(init=False)
+    starts: dict[Situation, Segment] = field(default_factory=dict)
+    leaving: dict[Situation, Because] = field(default_factory=dict)
+    _roots: dict[Situation, ActionSchema] = field(default_factory=dict)
+    _refused: dict[Situation, int] = field(default_factory=dict)  # how often a goal was, before it was issued
     _agenda: Agenda = field(init=False)
     _draft: Draft | None = None
 
     def __post_init__(self) -> None:
         self.memory = Memory(self.theory)
         self._agenda = Agenda(self.model)
-        self._root = root_schema(self.theory, self.goal)
-        self.start = self._new_start()
-
-    def _new_start(self) -> Segment:
-        granted = (True,) * len(self._root.executability)
-        start = self.model.new(self.model.root, Context(granted, frozenset(), frozenset({self.goal})))
-        start.because = (Because("goal", self.goal),)
-        return start
 
     @property
     def has_begun(self) -> bool:
-        """Has the root been issued?"""
-        return self.model.root in self.model.segments
+        """Has anything been issued that is still there?"""
+        return bool(self.model.segments)
 
     @property
     def is_done(self) -> bool:
         """Is there nothing left to reduce, held back or not?"""
-        return self._agenda.is_empty() if self.has_begun else bool(self.start.impossible)
+        if self.leaving or not all(start.impossible for start in self.starts.values()):
+            return False
+        return self._agenda.is_empty()
 
     @property
     def segments(self) -> list[Segment]:
-        """All segments, with the root also before it is issued."""
-        return list(self.model) if self.has_begun else [self.start]
+        """All segments, with the goals also before they are issued."""
+        return [*self.model, *self.starts.values()]
+
+    # ----------------------------------------------------------------------------------------------- goals
+
+    def pursue(self, goal: str) -> None:
+        """Plan for this goal, too, beside those that are there."""
+        root = Situation(goal)
+        self.leaving.pop(root, None)
+        if root not in self.model.roots:
+            self.model.roots[root] = None
+            self._roots[root] = root_schema(self.theory, goal)
+            self.starts[root] = self._new_start(root)
+            self.starts[root].pending = self.issuer.holder(frozenset({root}))  # it may just be going
+
+    def withdraw(self, goal: str, because: Because) -> None:
+        """Take the goal away, and all that stands for it alone."""
+        root = Situation(goal)
+        self.abandon()
+        if self.starts.pop(root, None) is not None:
+            self.model.roots.pop(root, None)
+        elif root in self.model.roots:
+            self.leaving[root] = because
+
+    def _leave(self) -> Step | None:
+        """Take one goal away at a time, so that what two have in common is not taken for what the other needs."""
+        if any(flight.withdrawn is not None for flight in self.issuer.under_way.values()):
+            return None
+        for root, because in list(self.leaving.items()):
+            shared = {c.situation for s in self.model.left_by(root) for c in s.children}
+            adaptation = self.issuer.withdraw(root, self.assuming.beliefs, self.assuming.watched)
+            if adaptation is not None:
+                del self.leaving[root]
+                self.records[adaptation.id] = Record(adaptation.id, adaptation.purpose, (because,), ())
+                self.mark(self.model.renew_contexts(shared), QUIESCENT, because)
+                self.counts["issued"] += 1
+                return Step("refine", root.schema, adaptations=(adaptation,), purpose=adaptation.purpose)
+        return None
+
+    def _come_back(self, root: Situation, because: Because) -> None:
+        """A goal could not be taken away: it is still there, and is still to go, unless it is wanted again."""
+        again = self.starts.pop(root, None)
+        if again is None:
+            self.leaving[root] = because
+        self.abandon()
+        self.mark(self.model.renew_contexts(list(self.model.segments)), QUIESCENT, because)
+        self.mark_outdated(QUIESCENT, because)
+
+    def adopt(self, theory: Theory, because: Because) -> None:
+        """Another text is the domain from now on: plan everything again that it makes different."""
+        self.abandon()
+        self.theory, self.memory = theory, Memory(theory)
+        for root in self._roots:
+            self._roots[root] = root_schema(theory, root.schema)
+        for root in self.starts:
+            self.starts[root] = self._new_start(root)
+        self.mark([s for s in self.model if s.refinement], QUIESCENT, because)
+        for segment in self.model:
+            segment.avoided, segment.settled = frozenset(), False
+
+    def _new_start(self, root: Situation) -> Segment:
+        granted = (True,) * len(self._roots[root].executability)
+        start = self.model.new(root, Context(granted, frozenset(), frozenset({root.schema})))
+        start.because = (Because("goal", root.schema),)
+        return start
 
     # ------------------------------------------------------------------------------------------- one step
 
@@ -90,6 +150,9 @@ class Reducer:
         nothing to do now.
         """
         if self._draft is None:
+            left = self._leave() if self.leaving else None
+            if left is not None:
+                return left
             self._draft = self._next_draft()
         return None if self._draft is None else self._work_on(self._draft)
 
@@ -98,8 +161,11 @@ class Reducer:
         self._draft = None
 
     def _next_draft(self) -> Draft | None:
-        if not self.has_begun:
-            return None if self.start.impossible else Draft(self.start, f"goal {self.goal}")
+        for root, start in self.starts.items():
+            if start.pending is not None and start.pending not in self.issuer.under_way:
+                self.starts[root] = start = self._new_start(root)  # it was held back, and its version may have risen
+            if not start.impossible and start.pending is None:
+                return Draft(start, f"goal {start.name}")
         segment = self._agenda.next()
         return None if segment is None else Draft(segment, *self._purpose(segment))
 
@@ -164,10 +230,13 @@ class Reducer:
         holder = self.issuer.holder(touched)
         if holder is not None:
             self._agenda.set_aside(segment, holder)
+            if segment.situation in self.starts:
+                segment.pending = holder
             return self._step("refine", draft)
         below = [child.situation for child in segment.children]
         below += [c.situation for r in draft.refinements.values() for c in r.children if c.situation not in touched]
         adaptation = self.issuer.issue(draft, difference, self.assuming.beliefs, self.assuming.watched)
+        self.starts.pop(segment.situation, None)
         segment.stale, segment.urgency, segment.asked = False, QUIESCENT, ()
         for situation in draft.refinements:
             issued = self.model.segments[situation]
@@ -236,7 +305,8 @@ class Reducer:
         return found, left
 
     def _schema(self, situation: Situation) -> ActionSchema:
-        return self._root if situation == self.model.root else self.theory.domain.schemas[situation.schema]
+        root = self._roots.get(situation)
+        return root if root is not None else self.theory.domain.schemas[situation.schema]
 
     def _context(self, situation: Situation, draft: Draft) -> Context:
         if situation == draft.segment.situation:
@@ -303,17 +373,27 @@ class Reducer:
         """Plan again what was in an adaptation that was refused (`why`) or that took too long."""
         flight = self.issuer.not_applied(adaptation)
         self._agenda.release(adaptation)
+        if flight is not None and flight.withdrawn is not None:
+            because = Because("adaptation_refused" if why else "adaptation_timed_out", str(adaptation))
+            self._come_back(flight.withdrawn[0], because)
         if flight is not None and flight.segment is not None:
             self.abandon()
             trigger: Trigger = "adaptation_refused" if why else "adaptation_timed_out"
             self._plan_again(flight, flight.segment, why, Because(trigger, str(adaptation)))
 
     def _plan_again(self, flight: UnderWay, situation: Situation, why: str, because: Because) -> None:
-        if not self.has_begun:
-            self.start = replace(self._new_start(), refusals=self.start.refusals)
-        segment = self.model.segments.get(situation, self.start)
+        if situation in self.model.roots and situation not in self.model.segments:
+            if self.leaving.pop(situation, None) is not None:
+                del self.model.roots[situation]
+                return
+            self.model.roots[situation] = None
+            self.starts[situation] = self._new_start(situation)
+            self.starts[situation].refusals = self._refused.get(situation, 0)
+        segment = self.model.segments.get(situation) or self.starts[situation]
         self.mark([segment], QUIESCENT, because)
         segment.refusals += bool(why)
+        if situation in self.starts:
+            self._refused[situation] = segment.refusals
         if segment.refusals >= MOST_REFUSALS:
             segment.impossible = f"it was refused {segment.refusals} times ({why})"
         restored = [s for s, _ in flight.before]

@@ -90,6 +90,11 @@ class Assuming:
             self.records.append(Relaxation(name, "reinstated"))
         return name
 
+    def adopt(self, domain: Domain) -> None:
+        """Another text: what was given up stays given up."""
+        self.domain = domain
+        self.beliefs = replace(self.beliefs, domain=domain)
+
     @property
     def watched(self) -> dict[str, int]:
         """The failed ones that may come back; how many periods long their monitors shall wait."""
