@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from msgspec.structs import replace
 
 from planner_reactor.errors import InputError
 from planner_reactor.reactor.journal import Journal
@@ -144,3 +145,17 @@ def test_each_start_is_another_incarnation() -> None:
     disk = TornDisk()
     for count in (1, 2, 3):
         assert Bench(journal=Journal(disk)).reactor.journal.state.incarnation == count
+
+
+def test_a_reaction_that_ended_by_itself_does_not_come_back() -> None:
+    disk = TornDisk()
+    bench = Bench(journal=Journal(disk))
+    once = "P[0] = Do[asked, 1] : REPORT[answer, 42]\n" + FIRST.definitions.replace("P[0]", "P[9]")
+    bench.at(0.0, replace(FIRST, definitions=once, adds=(3, 2, 1, 9, 0)))
+    bench.run(5.0)
+    assert bench.reactor.laws.violations == []
+    assert len([p for p in bench.perceptions() if p.kind == "information"]) == 1
+    again = survivor(disk)
+    again.run(5.0)
+    assert not [p for p in again.perceptions() if p.kind == "information"]
+    assert again.reactor.laws.violations == []

@@ -83,6 +83,10 @@ class Committed(msgspec.Struct, frozen=True):
             taken=self.taken.with_(adaptation.id),
         )
 
+    def without(self, label: int) -> Committed:
+        """What it is once this reaction has ended by itself."""
+        return replace(self, clauses={n: text for n, text in self.clauses.items() if n != label})
+
     def told(self, assumption: str, *, holds: bool) -> Committed:
         """What it is once it is known that an assumption fails, or holds again."""
         others = {a for a in self.failed if a != assumption}

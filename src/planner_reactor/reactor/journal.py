@@ -69,6 +69,13 @@ class Halted(msgspec.Struct, frozen=True, tag="halted"):
     time: float
 
 
+class Left(msgspec.Struct, frozen=True, tag="left"):
+    """A reaction ended by itself: it is of the structure no more."""
+
+    label: int
+    time: float
+
+
 class Started(msgspec.Struct, frozen=True, tag="started"):
     """A reactor began to act on what this journal says: the next incarnation."""
 
@@ -90,7 +97,7 @@ class Snapshot(msgspec.Struct, frozen=True, tag="snapshot"):
     time: float
 
 
-Record: TypeAlias = Begun | Decided | Assumed | Halted | Started | Snapshot
+Record: TypeAlias = Begun | Decided | Assumed | Halted | Left | Started | Snapshot
 
 _encode = msgspec.msgpack.Encoder().encode
 _decode = msgspec.msgpack.Decoder(Record).decode
@@ -248,5 +255,7 @@ def after(state: State, record: Record) -> State:
             return replace(state, committed=committed.told(assumption, holds=holds))
         case Halted(halted):
             return replace(state, committed=replace(committed, halted=halted))
+        case Left(label):
+            return replace(state, committed=committed.without(label))
         case Started():
             return replace(state, incarnation=state.incarnation + 1)

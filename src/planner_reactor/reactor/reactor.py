@@ -22,7 +22,7 @@ from planner_reactor.reactor.assumptions import Assumptions
 from planner_reactor.reactor.built_ins import BuiltIns
 from planner_reactor.reactor.composition import undone
 from planner_reactor.reactor.disks import NoDisk
-from planner_reactor.reactor.journal import Halted, Journal, Recovery, Started, State
+from planner_reactor.reactor.journal import Halted, Journal, Left, Recovery, Started, State
 from planner_reactor.reactor.laws import Laws
 from planner_reactor.reactor.recovery import restore
 from planner_reactor.reactor.structure import bound_of, text_of
@@ -307,6 +307,8 @@ class Reactor:
         retired = self.reactions.pop(label, None) is None
         self.counts["changes_applied"] += 1
         changed = not retired and self.transactions.changed(label, added=False)
+        if not changed and not retired:
+            self.journal.note(Left(label, self.scheduler.now))
         if changed or retired:
             self.perceive("guard_kill", str(label))
         if not changed:
