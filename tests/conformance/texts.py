@@ -46,7 +46,8 @@ CONTROLS = (
     "KILL[2] # Delay[1]", "POST[7] # Delay[1]", "ASSERT[s, 1] # Delay[1]", "ASSERT[t, 2]", "REASSERT[t, 1] # Delay[3]",
     "ASSUMONITOR[A, 500] # Delay[1]", "HOLDMONITOR[A, 0]", "REPORT[done, 1]", "SUCCEED[s, 1]", "FAIL[t, 1]",
     "UPDATE[s, 1, 5]", "SIT[t]<k>", "RENEW[s]", "RENEW[t]", "RETIRE[1]", "RETIRE[7]", "RETIRE[9]", "WAITOLD[s]",
-    "WAITOLD[t] # Delay[1]",
+    "WAITOLD[t] # Delay[1]", "DISABLED[s]<k>", "DISABLED[t] # Delay[1]", "ENABLED[s]", "ENABLED[t]", "FREEZE[s]",
+    "FREEZE[t]", "FREEZE[s]",
 )  # fmt: skip
 """What scripts are made of."""
 
@@ -57,13 +58,14 @@ HOLDING = (
     "(DRAIN[t]) ; (Delay[1]) ; (FAIL[s, 1]) ; (SUCCEED[s, 2]) ; (Delay[1])",
     "(DISABLE[s, A]) ; (Delay[1]) ; (ENABLE[s, A]) ; (DRAIN[s]) ; (DRAIN[t]) ; (UNINHIBIT[t]) ; (UNINHIBIT[s])",
     "(DISABLE[t, A]) ; (DISABLE[s, B]) ; (DISABLE[t, A]) ; (Delay[2]) ; (ENABLE[s, B])",
+    "(Delay[1]) ; (FREEZE[t]) ; (Delay[1]) ; (FREEZE[s]) ; (Delay[1]) ; (UNINHIBIT[s]) ; (UNINHIBIT[t])",
 )
 """Scripts that hold ASSERTs back while those who made them come to their ends."""
 
 NESTING = (
     "Delay[1] ; ASSERT[t, {x}]", "Slow ; REASSERT[t, {x}]", "ASSERT[t, 1]<{y}> ; ASSERT[t, {x}]", "ASSERT[t, 2]<{y}>",
     "(ASSERT[t, {x}] # Slow) ; REASSERT[t, {x}]", "ASSERT[t, 1] | (Delay[1] : ASSERT[t, 2])", "REASSERT[t, {x}]<{y}>",
-    "Term[2] : ASSERT[s, {x}]",
+    "Term[2] : ASSERT[s, {x}]", "Delay[1] ; FREEZE[t] ; ASSERT[t, {x}]", "Delay[1] : ~FREEZE[s] : ASSERT[t, {x}]",
 )  # fmt: skip
 """What bodies of s assert."""
 
@@ -76,6 +78,10 @@ ADAPTING = (
     "(Quick) ; (POST[7]) ; (Delay[0.5]) ; (RENEW[s]) ; (RETIRE[1]) ; (WAITOLD[s]) ; (KILL[1])",
     "(DISABLE[t, A]) : (Delay[1]) : ((KILL[3] # Delay[2]) | (KILL[1] # Delay[1])) ; (ENABLE[t, A])",
     "(DRAIN[s] # Delay[0.5]) ; (DRAIN[t] # Term[1]) ; (KILL[1] # Delay[1])",
+    "(Delay[1]) ; (FREEZE[s]) ; (Slow) ; (UNINHIBIT[s])",
+    "(Delay[0.5]) ; (FREEZE[s]) ; (KILL[1]) ; (DRAIN[s]) ; (POST[7])",
+    "((DISABLED[t]) :; (ASSERT[s, 1] ; ENABLED[t])) | ((Delay[1]) ; (DISABLE[t, A]) ; (Delay[2]) ; (ENABLE[t, A]))",
+    "(Delay[0.5]) ; (KILL[3] # Delay[1]) ; (KILL[3] # Delay[2]) ; (KILL[2] # Delay[1])",
     "(RENEW[t]) : (POST[8]) : (RETIRE[2]) : (RETIRE[2]) : (WAITOLD[t]) : (KILL[2]) : (POST[2])",
 )
 """Scripts that change reactions, well and badly."""
@@ -137,8 +143,8 @@ class _Texts:
         served = [self.reaction(s) for s in ("s", "t") for _ in range(draw.choice(twice))]
         guarded = [f"(E[{n}] # {text})" if draw.random() < 0.6 else text for n, text in enumerate(served, 1)]
         drivers = [f"({self.process(self.depth, [], True)})" for _ in range(draw.choice(twice))]
-        if draw.random() < 0.3:  # a reaction without a SIT, as the root reactions of R Fig. 8
-            drivers[0] = f"(E[3] # {drivers[0]})"
+        if draw.random() < 0.4:  # a reaction without a SIT, as the root reactions of R Fig. 8
+            drivers[0] = f"(E[3] # {draw.choice([drivers[0], drivers[0], '(Delay[1] :; ASSERT[s, 1])'])})"
         if draw.random() < 0.4:
             definitions += [f"React[{n}] = {self.reaction(draw.choice('st'))}" for n in (7, 8)]
             guarded.append("(ADD<m> :: (E[m] # React[m]))")

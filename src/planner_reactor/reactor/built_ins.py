@@ -12,6 +12,7 @@ from typing import Any
 
 from planner_reactor.reactor.controls import Controls, commits
 from planner_reactor.reactor.guards import Guards
+from planner_reactor.reactor.holding import Holding
 from planner_reactor.reactor.monitors import Monitors
 from planner_reactor.reactor.situations import Situations
 from planner_reactor.reactor.wakers import ExecuterWaker
@@ -43,8 +44,10 @@ class BuiltIns:
         situation_processes = Controls(self.situations)
         self._waker.ended_wait = situation_processes.granted
         monitors = Monitors(scheduler, assumptions or {}, assumed, reached, told)
-        committing = commits(commit)
-        self.controls: tuple[Control, ...] = (*situation_processes, *self.guards, *monitors, committing)
+        holding = Holding(self.situations, situation_processes.sit, self._waker)
+        self.controls: tuple[Control, ...] = (
+            *situation_processes, *self.guards, *monitors, *holding, commits(commit)
+        )  # fmt: skip
 
     def attach(self, executer: Executer) -> None:
         self._waker.executer = executer

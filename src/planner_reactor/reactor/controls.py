@@ -69,7 +69,7 @@ class Sit:
         self._situations = situations
         self._serving = situations.serving
         self._waiting: dict[Strand, tuple[str, Reaction]] = {}
-        self.interrupted = 0
+        self.bodies: dict[Body, None] = {}  # in service, in the order of their beginning
 
     def start(self, strand: Strand, arguments: tuple[Value, ...]) -> Outcome | None:
         situation, reaction = str(arguments[0]), (strand.guard, strand.site)
@@ -87,10 +87,12 @@ class Sit:
 
     def opened(self, strand: Strand, body: Body) -> None:
         instance, reaction = served(body)
+        self.bodies[body] = None
         self._situations.enter(instance, reaction)
 
     def closed(self, body: Body) -> None:
         instance, reaction = served(body)
+        del self.bodies[body]
         self._situations.leave(instance, reaction, cut=body.outcome == "killed")
 
 

@@ -38,7 +38,8 @@ class Situations:
 
     def __init__(self, waker: Waker, notice: Notice) -> None:
         self._waker = waker
-        self._notice = notice
+        self.notice = self._notice = notice
+        self.flipped: Callable[[str], None] = lambda name: None  # told when a situation is disabled, or enabled again
         self._by_name: dict[str, Situation] = {}
         self._instances: dict[int, Instance] = {}
         self._awaited: dict[Strand, Instance] = {}
@@ -69,6 +70,11 @@ class Situations:
 
     def is_disabled(self, name: str, assumption: str) -> bool:
         return any(held.owner == ("assumption", assumption) for held in self.named(name).inhibitions)
+
+    def disabled_by(self, name: str) -> str | None:
+        """The failed assumption that disabled the situation first, of those that do."""
+        owners = [held.owner for held in self.named(name).inhibitions if held.kind == "assumption"]
+        return str(owners[0][1]) if owners else None  # type: ignore[index]  # ("assumption", name)
 
     def get(self, situation: str, number: object) -> Instance | None:
         instance = self._instances.get(number) if isinstance(number, int) else None
@@ -308,6 +314,8 @@ class Situations:
         situation.held_back += kind != "inhibit"
         situation.disabled += kind == "assumption"
         self._notice("inhibited", situation=situation.name, owner=named(owner), because=kind)
+        if kind == "assumption":
+            self.flipped(situation.name)
 
     def uninhibit(self, name: str, owner: Hashable) -> bool:
         """Take away this owner's latest inhibition of s; False (and no effect) if it has none."""
@@ -320,6 +328,8 @@ class Situations:
                 situation.held_back -= held.kind != "inhibit"
                 situation.disabled -= held.kind == "assumption"
                 self._notice("uninhibited", situation=name, owner=named(owner))
+                if held.kind == "assumption":
+                    self.flipped(name)
                 self._release(situation)
                 return True
         self._notice("foreign_uninhibit", situation=name, owner=named(owner))

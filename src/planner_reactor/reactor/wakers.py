@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Protocol
 
 from planner_reactor.rs.terms import Value
-from planner_reactor.runtime import Executer, Outcome, Strand
+from planner_reactor.runtime import Body, Executer, Outcome, Strand
 
 
 class Waker(Protocol):
@@ -17,6 +17,9 @@ class Waker(Protocol):
 
     def wake(self, strand: Strand) -> None:
         """The process that this strand waits in may try again, as a step of its own."""
+
+    def cut(self, body: Body, cause: str) -> None:
+        """A body in service aborts, inside the present step."""
 
     def resting(self, strand: Strand) -> bool:
         """Is nothing below this part of a guarded reaction in service?"""
@@ -39,6 +42,9 @@ class ExecuterWaker:
 
     def wake(self, strand: Strand) -> None:
         self.executer.wake(strand)
+
+    def cut(self, body: Body, cause: str) -> None:
+        self.executer.cut(body, cause)
 
     def resting(self, strand: Strand) -> bool:
         return self.executer.resting(strand)

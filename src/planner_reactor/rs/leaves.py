@@ -18,7 +18,7 @@ from msgspec.structs import replace
 from planner_reactor.errors import Place
 from planner_reactor.rs.comparisons import TESTS
 from planner_reactor.rs.configurations import AB, OK, Config, Label, World
-from planner_reactor.rs.evolves import settle
+from planner_reactor.rs.evolves import abort, settle
 from planner_reactor.rs.expressions import is_number
 from planner_reactor.rs.serving import RULES
 from planner_reactor.rs.states import (
@@ -26,6 +26,7 @@ from planner_reactor.rs.states import (
     Ended,
     Group,
     Leaf,
+    Path,
     Queued,
     Round,
     Run,
@@ -301,16 +302,45 @@ def resting(term: Run, *, sensing: bool | None = None) -> bool:
             return all(resting(p, sensing=sensing) for p in parts_of(term))
 
 
+def _frozen(freezer: Spot, leaf: Leaf, spots: list[Spot], config: Config) -> Iterator[Offer]:
+    """`FREEZE[s]`: INHIBIT[s], and the bodies in service of s and below it abort; their instances stay on.
+
+    It aborts itself if it stands in one of them.
+    """
+    (situation,) = leaf.arguments
+    store = config.store.inhibit(str(situation), freezer.root, "inhibit")
+    changes: list[tuple[Spot, Run]] = [(freezer, Ended(True))]
+    for spot in _in_service(config, str(situation)):
+        if spot.root == freezer.root and freezer.path[: len(spot.path)] == spot.path:
+            yield Offer(("FREEZE", leaf.arguments, AB, ()), ((freezer, Ended(False, cause="error")),), config.store)
+            return
+        store = abort(parts_of(spot.leaf)[0], store, spot.root)
+        changes.append((spot, with_parts(spot.leaf, (Ended(False, cause="frozen"),))))
+    yield Offer(("FREEZE", leaf.arguments, OK, ()), tuple(changes), store)
+
+
+def _in_service(config: Config, situation: str) -> Iterator[Spot]:
+    """FREEZE: the outermost bodies in service of instances of the situation, or below them."""
+    waiting: list[tuple[int, Path, Run]] = [(number, (), term) for number, term in reversed(config.roots)]
+    while waiting:
+        root, path, term = waiting.pop()
+        if isinstance(term, Serve) and config.store.above(term.instance, situation):
+            yield Spot(root, path, term)
+        else:
+            waiting += reversed([(root, (*path, n), part) for n, part in enumerate(parts_of(term))])
+
+
 MEETINGS: dict[str, Meeting] = {
     "OUT": _communicated,
     "POST": _posted,
     "KILL": _killed,
     "RETIRE": _retired,
     "E": _guarding,
+    "FREEZE": _frozen,
 }
 
 PASSIVE = frozenset({"NIL", "IN", "ADD"})
 """Leaves that have no step of their own."""
 
-RESTING = frozenset({"NIL", "E", "ADD", "SIT", "ASSUMONITOR", "HOLDMONITOR"})
+RESTING = frozenset({"NIL", "E", "ADD", "SIT", "DISABLED", "ENABLED", "ASSUMONITOR", "HOLDMONITOR"})
 """Leaves at which a reaction may be removed: nothing has begun."""

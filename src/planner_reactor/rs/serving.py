@@ -117,6 +117,19 @@ def enable(leaf: Leaf, spot: Spot, store: Store, world: World) -> Result | None:
     return OK, (), Ended(True), store.uninhibit(situation, ("assumption", assumption))
 
 
+def disabled(leaf: Leaf, spot: Spot, store: Store, world: World) -> Result | None:
+    """DISABLED[s]<a>: stops while a failed assumption disables s; a is the one that did it first."""
+    owner = store.disabled_by(str(leaf.arguments[0]))
+    if owner is None:
+        return None
+    return OK, (owner,), Ended(True, results_of(leaf, (owner,))), store
+
+
+def enabled(leaf: Leaf, spot: Spot, store: Store, world: World) -> Result | None:
+    """ENABLED[s]: stops while none does."""
+    return None if store.disabled(str(leaf.arguments[0])) else (OK, (), Ended(True), store)
+
+
 def stub(leaf: Leaf, spot: Spot, store: Store, world: World) -> Result | None:
     """STUB[s]: the failure that follows is known to come from a placeholder."""
     return OK, (), Ended(True), store if spot.owner is None else store.changed(spot.owner, stub=True)
@@ -150,6 +163,8 @@ RULES: dict[str, Rule] = {
     "UNINHIBIT": uninhibit,
     "DISABLE": disable,
     "ENABLE": enable,
+    "DISABLED": disabled,
+    "ENABLED": enabled,
     "STUB": stub,
     "REPORT": report,
     "ASSUMONITOR": monitor,

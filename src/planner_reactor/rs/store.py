@@ -96,6 +96,11 @@ class Store(msgspec.Struct, frozen=True, cache_hash=True):
     def disabled(self, situation: str) -> bool:
         return any(h.situation == situation and h.kind == "assumption" for h in self.inhibitions)
 
+    def disabled_by(self, situation: str) -> str | None:
+        """The failed assumption that disabled the situation first, of those that do."""
+        owners = [h.owner for h in self.inhibitions if h.situation == situation and h.kind == "assumption"]
+        return str(owners[0][1]) if owners else None  # type: ignore[index]  # ("assumption", name)
+
     def gone(self, owner: InstanceNumber | None) -> bool:
         """Has this owner ended, or is it being withdrawn?"""
         if owner is None:

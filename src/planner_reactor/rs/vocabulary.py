@@ -4,7 +4,7 @@ declared.
 A `Signature` says what a basic or built-in process takes and returns, how long it may last and how it may
 end. `BUILT_IN` holds the processes of R §4.2 and X §4.1 (ports, time, tests), of R Tables 1 and 2
 (situations, guards) and R §8.3 (stubs, monitors), with ours: DRAIN, POST, HOLDMONITOR, REPORT, DISABLE,
-ENABLE. Their meaning is not here: see `evolves` and `semantics`. A host declares its own processes in the
+ENABLE, DISABLED, ENABLED, FREEZE. Their meaning is not here: see `evolves` and `semantics`. A host declares its own processes in the
 same form.
 """
 
@@ -117,6 +117,9 @@ def _adaptation() -> Iterable[Signature]:
     yield Signature("COMMIT", ("number",), window=AT_ONCE)
     yield Signature("DISABLE", ("situation", "assumption"), window=AT_ONCE, outcomes=STOPS)
     yield Signature("ENABLE", ("situation", "assumption"), window=AT_ONCE, outcomes=STOPS)
+    yield Signature("DISABLED", _FIRST, ("assumption",), outcomes=STOPS)
+    yield Signature("ENABLED", _FIRST, outcomes=STOPS)
+    yield Signature("FREEZE", _FIRST, window=AT_ONCE)
 
 
 def _monitors() -> Iterable[Signature]:

@@ -24,7 +24,7 @@ from planner_reactor.runtime.leaves import Use
 from planner_reactor.runtime.outcomes import Control, Label, Observer, Outcome
 from planner_reactor.runtime.rest import is_resting
 from planner_reactor.runtime.scheduler import Scheduler
-from planner_reactor.runtime.strands import WAITING, WOKEN, Root, Strand
+from planner_reactor.runtime.strands import WAITING, WOKEN, Body, Root, Strand
 from planner_reactor.runtime.witnesses import Witness
 from planner_reactor.trace import Trace
 
@@ -182,6 +182,11 @@ class Executer:
     def wake(self, strand: Strand) -> None:
         """The control in which this strand waits is started again, as a step of its own."""
         self._kernel.wake(strand)
+
+    def cut(self, body: Body, cause: str) -> None:
+        """Abort a body in service, as a part of the present step: its basic processes are abandoned (N9)."""
+        self._kernel.cut(body, cause)
+        self._kernel.arm()
 
     def resting(self, strand: Strand) -> bool:
         """Is nothing below this strand (a part of a guarded `#`) in service?

@@ -17,7 +17,7 @@ from typing import Any
 
 from planner_reactor.rs.terms import Value
 from planner_reactor.runtime.budgets import Budgets
-from planner_reactor.runtime.killing import abort_body, kill
+from planner_reactor.runtime.killing import abort_body, cut_body, kill
 from planner_reactor.runtime.outcomes import Label, Observer
 from planner_reactor.runtime.pause import Passing, Pause
 from planner_reactor.runtime.scheduler import Entry, Scheduler
@@ -27,6 +27,7 @@ from planner_reactor.runtime.strands import (
     SILENT,
     WAITING,
     WOKEN,
+    Body,
     Fork,
     Instruction,
     Root,
@@ -129,6 +130,8 @@ class Kernel:
                 if strand.state == SILENT:
                     strand.state = RUNNING
                     self.advance(strand, strand.pc)
+                    if self.watched:  # it may have ended, and never have a turn
+                        self.moved(strand)
             if self.verdicts:
                 self.decide(self.verdicts.next())
             elif self._later:
@@ -269,6 +272,10 @@ class Kernel:
         strand.link = entry = (self, strand)
         strand.state = WAITING
         self.scheduler.wait(self.scheduler.now + self.budgets.quantum, entry)
+
+    def cut(self, body: Body, cause: str) -> None:
+        """Abort a body in service; its strand goes on behind it within the present step."""
+        cut_body(self, body, cause)
 
     def crowded(self, strand: Strand, ab: Instruction) -> Instruction | None:
         """No further strand may come to life: the nearest body aborts; in a root, what would have forked."""

@@ -49,6 +49,14 @@ def close(books: Books, body: Body, outcome: str) -> None:
     body.release()
 
 
+def cut_body(books: Books, body: Body, cause: str) -> None:
+    """Abort a body in service from outside its own turn: what its strand waits for is taken back first."""
+    strand = body.strand
+    if strand.state in (WAITING, WOKEN):
+        strand.pc.cancel(strand)  # type: ignore[attr-defined]  # only a leaf waits
+    abort_body(books, body, cause)
+
+
 def abort_body(books: Books, body: Body, cause: str) -> None:
     """Abort a body in service: its content is killed; its strand goes on where the body's abort leads."""
     strand = body.strand
