@@ -95,3 +95,22 @@ def test_what_is_found_is_made_small(monkeypatch: pytest.MonkeyPatch) -> None:
     small = shrunk(example(seed), lambda candidate: disagrees(candidate, seed))
     assert len(str(small)) < len(str(example(seed))) / 2
     assert disagrees(small, seed)
+
+
+FOUND = {
+    "KILL is tried again when what was in service has ended without a step of its own": Example(
+        "",
+        (
+            "E[3] # (ASSERT[s, 2]<x> | ASSERT[t, 4]<y>)",
+            "KILL[3]",
+            "DRAIN[t] ; Delay[1] ; FAIL[s, 1] ; Delay[1]",
+        ),
+    ),
+}
+"""What campaigns have found, made small."""
+
+
+@pytest.mark.parametrize("what", FOUND)
+def test_what_was_found_once_conforms(what: str) -> None:
+    for seed in range(1, 4):  # a fifth of the seeds kills a root
+        conforms(FOUND[what], seed)
