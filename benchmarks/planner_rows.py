@@ -25,6 +25,10 @@ def beginnings(peers: Peers) -> list[Row]:
         row(f"first adaptation, {n} kinds", "ms", ours.first_adaptation(n), goal, whole[n])
         for n, goal in ((3, 5.0), (100, 10.0))
     ]
+    rows += [
+        row(f"first adaptation, {n} kinds, verified", "ms", ours.first_adaptation(n, verify=True), goal, whole[n])
+        for n, goal in ((3, 5.0), (100, 10.0))
+    ]
     ideal = {n: ours.first_ideal(n) for n in (3, 25, 100)}
     rows += [row(f"first ideal reactor, {n} kinds", "ms", ideal[n], 100.0, whole[n]) for n in (3, 100)]
     cold = ours.from_process_start(n := 100)
@@ -62,6 +66,8 @@ def relaxations(peers: Peers) -> list[Row]:
         if name in ("AQ", "ACT", "ADT"):
             growth = ours.exponent(ours.relaxing(25, name), many)
             rows.append(row("  growth, 25 to 100 kinds", "exponent", growth, 1.1, {}))
+    rows.append(row("relaxing AQ, 3 kinds", "ms", ours.relaxing(3, "AQ"), None, {}))
+    rows.append(row("relaxing AQ, 3 kinds, verified", "ms", ours.relaxing(3, "AQ", verify=True), None, {}))
     rows.append(row("all nine, 3 kinds", "ms", ours.all_nine(3), 50.0, {}))
     return rows
 
