@@ -5,16 +5,41 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from typing import Any
 
+from planner_reactor.rs.checks import check
 from planner_reactor.rs.printer import show
-from planner_reactor.rs.terms import STOP, All, Call, Cond, Disable, If, Loop, Not, Par, Process, Seq, Spawn, cond, seq
+from planner_reactor.rs.terms import (
+    STOP,
+    All,
+    Call,
+    Cond,
+    Disable,
+    If,
+    Loop,
+    Not,
+    Par,
+    Process,
+    Schema,
+    Seq,
+    Spawn,
+    cond,
+    seq,
+)
+from tests.conformance.running import HOST, SIGNATURES
 from tests.conformance.texts import Example
 
 
 def shrunk(example: Example, fails: Callable[[Example], bool]) -> Example:
     """The smallest that one replacement at a time reaches; `fails` must hold of the example."""
-    while (smaller := next((e for e in _smaller(example) if fails(e)), None)) is not None:
+    while (smaller := next((e for e in _smaller(example) if _steps(e) and fails(e)), None)) is not None:
         example = smaller
     return example
+
+
+def _steps(example: Example) -> bool:
+    """Does every loop and recursion still take a step in each round?"""
+    roots = [Schema(f"root{n}", (), (), process) for n, process in enumerate(example.processes, 1)]
+    found = check(example.program.with_schemas(roots), signatures=SIGNATURES, functions=HOST.functions)
+    return not any(finding.code in ("silent-loop", "unguarded-recursion") for finding in found)
 
 
 def _smaller(example: Example) -> Iterator[Example]:

@@ -122,8 +122,8 @@ def loop(
     Returns what the world reports (for kitting `kits`, `parts`, `faults`, …), `adaptations`, `changes_applied`,
     `assumptions`, `first_adaptation_issued_s`, `first_reactor_s`, `first_ideal_s`, `stub_triggers`, `relaxations`,
     `interruptions`, `laws_checked`, `violations`, `unstruck` (faults that have not struck), `finished`, `figures`
-    (the files drawn), `simulated_s`, `wall_s`, `cpu_s`, `trace_hash` and, if asked, `conformance`. Raises InputError or SourceError for what
-    cannot be used.
+    (the files drawn), `simulated_s`, `wall_s`, `cpu_s`, `trace_hash` and, if asked, `conformance`. Raises InputError
+    or SourceError for what cannot be used.
     """
     given = _Options(**options)
     return _run(read_text(domain), str(domain), host, goal, given)
