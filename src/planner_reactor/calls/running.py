@@ -20,6 +20,7 @@ from planner_reactor.rs.configurations import spawned_situations
 from planner_reactor.rs.terms import Call, Program, Value
 from planner_reactor.runtime import Clock, Executer, Host, Root, Scheduler, VirtualClock, WallClock
 from planner_reactor.runtime.scheduler import END_OF_TIME
+from planner_reactor.runtime.sensing import Reading, Sensed
 from planner_reactor.trace import Event, Trace
 
 
@@ -89,10 +90,15 @@ def _executer(
     def assumed(assumption: str, holds: bool, evidence: str = "") -> None:
         trace.record("assumption", name=assumption, holds=holds, evidence=evidence)
 
+    def read(assumption: str, sensed: Sensed, *, returns: bool) -> None:
+        holds = sensed.holds if isinstance(sensed, Reading) else sensed
+        if holds is returns:
+            assumed(assumption, returns)
+
     built_in = BuiltIns(
         scheduler,
         host.assumptions,
-        assumed=assumed,
+        read=read,
         reached=lambda situation, instance: trace.record("stub", situation=situation, instance=instance),
         told=lambda name, values: trace.record("report", name=name, values=values),
     )

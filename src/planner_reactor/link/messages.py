@@ -21,6 +21,7 @@ PerceptionKind = Literal[
     "situation_failure",  # R §7.3 (3): an instance ended as failed; subject = the situation, cause says why
     "assumption_failure",  # R §7.3 (4): a monitor or a process reports it false; subject = the assumption
     "assumption_holds",  # a failed assumption holds again (R §9.2.3, reinstating); subject = the assumption
+    "assumption_unknown",  # its sensor says nothing of worth; subject = the assumption, cause = stale or stuck
     "adaptation_applied",  # subject = the adaptation's id
     "adaptation_refused",  # nothing of it was applied; cause says why
     "adaptation_timed_out",  # it exceeded its bound: nothing of it was applied, nothing is inhibited

@@ -18,6 +18,7 @@ from planner_reactor.reactor.situations import Situations
 from planner_reactor.reactor.wakers import ExecuterWaker
 from planner_reactor.rs.terms import Value
 from planner_reactor.runtime import Control, Executer, Scheduler
+from planner_reactor.runtime.sensing import Sensed
 
 
 def _unheard(*_: Any, **__: Any) -> None:
@@ -30,10 +31,10 @@ class BuiltIns:
     def __init__(
         self,
         scheduler: Scheduler,
-        assumptions: Mapping[str, Callable[[], bool | None]] | None = None,
+        assumptions: Mapping[str, Callable[[], Sensed]] | None = None,
         *,
         notice: Callable[..., None] = _unheard,
-        assumed: Callable[[str, bool], None] = _unheard,
+        read: Callable[..., None] = _unheard,
         reached: Callable[[str, int | None], None] = _unheard,
         told: Callable[[str, tuple[Value, ...]], None] = _unheard,
         commit: Callable[[int], bool] = lambda number: True,
@@ -43,7 +44,7 @@ class BuiltIns:
         self.guards = Guards(self.situations, self._waker, notice)
         situation_processes = Controls(self.situations)
         self._waker.ended_wait = situation_processes.granted
-        monitors = Monitors(scheduler, assumptions or {}, assumed, reached, told)
+        monitors = Monitors(scheduler, assumptions or {}, read, reached, told)
         holding = Holding(self.situations, situation_processes.sit, self._waker)
         self.controls: tuple[Control, ...] = (
             *situation_processes, *self.guards, *monitors, *holding, commits(commit)

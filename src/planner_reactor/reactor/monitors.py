@@ -12,24 +12,27 @@ from collections.abc import Callable, Iterator, Mapping
 from planner_reactor.reactor.controls import ERROR, STOPPED, BuiltIn, owner_of
 from planner_reactor.rs.terms import Value
 from planner_reactor.runtime import Outcome, Scheduler, Strand, Timer
+from planner_reactor.runtime.sensing import Sensed
 
-Report = Callable[[str, bool], None]
 
 
 class Monitors:
-    """STUB, ASSUMONITOR, HOLDMONITOR and REPORT. `assumed(a, holds)` is told of every reading that says something."""
+    """STUB, ASSUMONITOR, HOLDMONITOR and REPORT. `read(a, reading, returns=…)` is given every reading.
+
+    Only what a HOLDMONITOR reads `returns`: says that a failed assumption holds again.
+    """
 
     def __init__(
         self,
         scheduler: Scheduler,
-        sensed: Mapping[str, Callable[[], bool | None]],
-        assumed: Report,
+        sensed: Mapping[str, Callable[[], Sensed]],
+        read: Callable[..., None],
         reached: Callable[[str, int | None], None],
         told: Callable[[str, tuple[Value, ...]], None],
     ) -> None:
         self._scheduler = scheduler
         self._sensed = sensed
-        self._assumed = assumed
+        self._read = read
         self._reached = reached
         self._told = told
         self._timers: dict[Strand, Timer] = {}
@@ -52,7 +55,7 @@ class Monitors:
         return STOPPED
 
     def _monitor(self, *, reports: bool) -> Callable[[Strand, tuple[Value, ...]], Outcome | None]:
-        """A monitor that reports while its assumption's truth is `reports`."""
+        """A monitor that reports while its assumption's truth is `reports`; the other reading only counts."""
 
         def begin(strand: Strand, arguments: tuple[Value, ...]) -> Outcome | None:
             assumption, period = str(arguments[0]), arguments[1]
@@ -62,8 +65,7 @@ class Monitors:
 
             def check() -> None:
                 self._timers[strand] = self._scheduler.call_after(period / 1000, check)
-                if sense() is reports:
-                    self._assumed(assumption, reports)
+                self._read(assumption, sense(), returns=reports)
 
             # a step may not change the world it belongs to: the first reading is an event of its own
             self._timers[strand] = self._scheduler.call_after(0.0, check)

@@ -14,6 +14,7 @@ from planner_reactor.runtime.executer import Executer, Statistics
 from planner_reactor.runtime.host import Host, World
 from planner_reactor.runtime.outcomes import Control, Label, Outcome
 from planner_reactor.runtime.scheduler import Scheduler, Timer
+from planner_reactor.runtime.sensing import Caution, Reading
 from planner_reactor.runtime.signals import Aborted, Signal, sleep
 from planner_reactor.runtime.strands import Body, Root, Strand
 
@@ -21,12 +22,14 @@ __all__ = [
     "Aborted",
     "Body",
     "Budgets",
+    "Caution",
     "Clock",
     "Control",
     "Executer",
     "Host",
     "Label",
     "Outcome",
+    "Reading",
     "Root",
     "Scheduler",
     "Signal",

@@ -25,8 +25,10 @@ from planner_reactor.errors import InputError, nearest
 from planner_reactor.rs.terms import Value
 from planner_reactor.rs.vocabulary import BUILT_IN, Kind, Signature
 from planner_reactor.runtime.scheduler import Scheduler
+from planner_reactor.runtime.sensing import PLAIN, Caution, Sensed
 
 Routine = TypeVar("Routine", bound=Callable[..., Any])
+Sensor = TypeVar("Sensor", bound=Callable[[], Sensed])
 Listener = Callable[[str, bool, str], object]
 
 
@@ -68,7 +70,8 @@ class Host:
         self.name = name
         self.processes: dict[str, BasicProcess] = {}
         self.functions: dict[str, Callable[..., Value]] = {}
-        self.assumptions: dict[str, Callable[[], bool | None]] = {}
+        self.assumptions: dict[str, Callable[[], Sensed]] = {}
+        self.cautions: dict[str, Caution] = {}
         self.world: World | None = None
         self._listeners: list[Listener] = []
 
@@ -117,13 +120,18 @@ class Host:
         self.functions[routine.__name__] = routine
         return routine
 
-    def assumption(self, name: str) -> Callable[[Callable[[], bool | None]], Callable[[], bool | None]]:
-        """Register what the sensors say of an assumption: True (holds), False (fails), None (unknown)."""
+    def assumption(self, name: str, caution: Caution = PLAIN) -> Callable[[Sensor], Sensor]:
+        """Register what the sensors say of an assumption: True (holds), False (fails), None (unknown), or a `Reading`.
 
-        def register(sensor: Callable[[], bool | None]) -> Callable[[], bool | None]:
+        `caution` says how its readings are taken, also those that a process reports by itself.
+        """
+
+        def register(sensor: Sensor) -> Sensor:
             if name in self.assumptions:
                 raise InputError(f"{self.name}: assumption {name} is registered twice")
             self.assumptions[name] = sensor
+            if caution != PLAIN:
+                self.cautions[name] = caution
             return sensor
 
         return register
