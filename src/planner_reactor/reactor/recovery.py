@@ -17,6 +17,9 @@ from planner_reactor.rs.terms import STOP, Call, Number, Process, Program, cond
 from planner_reactor.rs.vocabulary import BUILT_IN
 from planner_reactor.runtime import Root
 
+RESTARTED = "restarted"
+"""The cause of refusing what was under way when the reactor was stopped."""
+
 if TYPE_CHECKING:
     from planner_reactor.reactor.reactor import Reactor
 
@@ -32,7 +35,7 @@ def restore(reactor: Reactor, recovery: Recovery, equation: Program) -> Root:
     reactor.assumptions.disable()
     for adaptation in journal.state.open:
         journal.note(Decided(adaptation.id, "refused", reactor.scheduler.now))
-        reactor.perceive("adaptation_refused", str(adaptation.id), cause="restarted")
+        reactor.perceive("adaptation_refused", str(adaptation.id), cause=RESTARTED)
     reactor.trace.record("restored", labels=sorted(committed.clauses), lost=recovery.lost, damaged=recovery.damaged)
     standing = tuple(sorted(committed.versions.items()))
     reactor.perceive("restarted", "damaged" if recovery.damaged else "sound", values=standing)
