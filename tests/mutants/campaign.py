@@ -21,10 +21,7 @@ EQUIVALENT = ROOT / "tests/mutants/equivalent.toml"
 
 RULE_TESTS = (
     "tests.rs.test_evolves",
-    "tests.rs.test_rules_of_situations",
-    "tests.rs.test_rules_of_offers",
-    "tests.rs.test_rules_of_terms",
-    "tests.rs.test_rules_of_causes",
+    *(f"tests.rs.{file.stem}" for file in sorted((ROOT / "tests/rs").glob("test_rules_of_*.py"), reverse=True)),
     "tests.rs.test_states",
     "tests.rs.test_configurations",
     "tests.rs.test_resting",

@@ -12,6 +12,7 @@ from planner_reactor.rs.states import (
     Ended,
 )
 from tests.rs.driving import SERVED, causes, following, inside
+from tests.rs.test_evolves import STOPS, run
 
 
 @pytest.mark.parametrize(
@@ -83,3 +84,8 @@ def test_n9_an_aborted_await_fails_its_instance_with_a_cause_and_nobody_collects
     (instance,) = config.store.instances
     assert (instance.status, instance.cause, instance.awaited) == ("ab", "cancelled", False)
     assert following(SERVED, "ASSERT[s] # Delay[1]", until=9).store.instances == ()
+
+
+def test_a_report_and_a_stub_stop_and_can_do_nothing_else() -> None:
+    assert run("REPORT[a, 1]") == STOPS
+    assert run("STUB[s]") == STOPS

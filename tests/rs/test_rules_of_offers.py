@@ -17,7 +17,7 @@ from planner_reactor.rs.states import (
     Leaf,
 )
 from planner_reactor.rs.vocabulary import BUILT_IN, Signature
-from tests.rs.driving import begun, causes, following, inside
+from tests.rs.driving import begun, causes, explored, following, inside
 from tests.rs.test_evolves import ABORTS, STOPS, run, world
 
 
@@ -208,3 +208,26 @@ def test_the_labels_of_the_guards_steps() -> None:
     assert isinstance(end, Ended)
     assert (end.ok, end.cause) == (False, "error")
     assert labels("E[1]") == {("E", (1,), "ab", ())}
+
+
+def test_the_labels_of_what_acts_on_situations() -> None:
+    def after(*texts: str) -> set[tuple[object, ...]]:
+        found = explored(*texts)
+        return {label for moves in found.moves for label, _ in moves if label[0] != "TIME"}
+
+    for call in ("SUCCEED[s, 1]", "FAIL[s, 1]", "UPDATE[s, 1, 2]", "INHIBIT[s]", "UNINHIBIT[s]", "DISABLE[s, A]",
+                 "ENABLE[s, A]", "STUB[s]", "REPORT[s]", "RENEW[s]", "ENABLED[s]"):  # fmt: skip
+        assert {label[2:] for label in after(call)} == {("ok", ())}, call
+    for call in ("ASSERT[s]", "REASSERT[s]", "WAIT[s]", "WAITINHIBIT[s]", "DRAIN[s]", "WAITOLD[s]"):
+        assert {label[2:] for label in after(call)} == {("wait", ())}, call
+    assert after("ASSERT[7]") == {("ASSERT", (7,), "ab", ())}
+    assert after("DRAIN[s] ; ASSERT[s]") == {("DRAIN", ("s",), "wait", ()), ("ASSERT", ("s",), "wait", ())}
+    served = after("SIT[s]<k, x> :; (SUCCEED[s, k] ; ASSERT[t])", "ASSERT[s, 5]")
+    assert {("SIT", ("s",), "ok", (1, 5)), ("ASSERT", ("t",), "ab", ())} <= served
+    assert ("SIT", ("s",), "ok", (1,)) in after("SIT[s]<k>", "ASSERT[s]")
+    assert ("ASSERT", ("s",), "ab", ()) in after("SIT[s]<k> :; ASSERT[s]", "ASSERT[s]")
+    assert after("ASSUMONITOR[a, 0]") == {("ASSUMONITOR", ("a", 0), "ab", ())}
+    (refused,) = steps(begun("POST[1] & (E[1] # NIL)", w=world()), world())
+    assert [(t.ok, t.cause) for t in inside(refused.after.root(1)) if isinstance(t, Ended)] == [(False, "error")]
+    (alone,) = steps(begun("E[1] & NIL", w=world()), world())
+    assert [t.ok for t in inside(alone.after.root(1)) if isinstance(t, Ended)] == [False]
