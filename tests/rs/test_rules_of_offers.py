@@ -231,3 +231,22 @@ def test_the_labels_of_what_acts_on_situations() -> None:
     assert [(t.ok, t.cause) for t in inside(refused.after.root(1)) if isinstance(t, Ended)] == [(False, "error")]
     (alone,) = steps(begun("E[1] & NIL", w=world()), world())
     assert [t.ok for t in inside(alone.after.root(1)) if isinstance(t, Ended)] == [False]
+
+
+def test_what_acts_on_situations_at_once_stops() -> None:
+    for call in ("SUCCEED[s, 1]", "FAIL[s, 1]", "UPDATE[s, 1, 2]", "INHIBIT[s]", "UNINHIBIT[s]", "DISABLE[s, A]",
+                 "DISABLE[s, A] : DISABLE[s, A]", "ENABLE[s, A]", "STUB[s]", "REPORT[s]", "RENEW[s]",
+                 "FREEZE[s]"):  # fmt: skip
+        assert run(call) == STOPS, call
+    assert run("ASSERT[7]") == run("ASSUMONITOR[a, 0]") == run("HOLDMONITOR[a, 0 - 1]") == ABORTS
+    assert run("ASSUMONITOR[a, 0.5]") == {"runs"}
+
+
+def test_freeze_of_what_it_stands_in_itself_is_an_error_and_of_anything_else_it_is_not() -> None:
+    within = "(SIT[s]<k> :; (FREEZE[{}] ; NIL)) | (SIT[t]<j> :; NIL)"
+    for situation, ok in (("s", False), ("t", True)):
+        found = explored(within.format(situation), "ASSERT[s] & ASSERT[t]")
+        labels = {label for moves in found.moves for label, _ in moves if label[0] == "FREEZE"}
+        assert labels == {("FREEZE", (situation,), "ok" if ok else "ab", ())}
+    config = following("(SIT[s]<k> :; (FREEZE[s] & NIL))", "ASSERT[s]", until=1)
+    assert [(t.ok, t.cause) for t in inside(config.root(1)) if isinstance(t, Ended)] == [(False, "error")]
