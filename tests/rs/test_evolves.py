@@ -431,3 +431,9 @@ def test_add_takes_a_posted_label_and_a_label_in_use_is_refused() -> None:
     assert run(reactor, "POST[4]", "IN[p]<x>", program=program) == {(True, (("x", 4),))}
     assert run(reactor, "Delay[1] ; POST[4]", program="P[4] = NIL") == STOPS
     assert run(reactor, "POST[4] : POST[4]", program="P[4] = NIL") == ABORTS
+
+
+def test_a_guard_that_guards_nothing_is_no_guard() -> None:
+    assert run("STOP | E[3]", "KILL[3]") == ABORTS
+    assert run("STOP | E[3]", "RETIRE[3]") == ABORTS
+    assert run("STOP | E[3]", "POST[3]", "ADD<m>") == {(True, (("m", 3),))}

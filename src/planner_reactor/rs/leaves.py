@@ -227,7 +227,7 @@ def _older(term: Run, seconds: float, world: World) -> Run:
 def _posted(poster: Spot, leaf: Leaf, spots: list[Spot], config: Config) -> Iterator[Offer]:
     """`POST[n]` meets `ADD<m>`: m becomes n. A label in use is refused."""
     (label,) = leaf.arguments
-    if _named(spots, "E", (label,)):
+    if _guards(label, spots, config):
         yield Offer(("POST", (label,), AB, ()), ((poster, Ended(False, cause="error")),), config.store)
         return
     for adder, wanted in _named(spots, "ADD", ()):
@@ -242,16 +242,27 @@ def _named(spots: list[Spot], name: str, arguments: tuple[Value, ...]) -> list[t
     ]  # fmt: skip
 
 
+def _guards(label: Value, spots: list[Spot], config: Config) -> list[tuple[Spot, Group]]:
+    """Every `E[label]` that guards something, with the `#` in which it stands."""
+    found = ((guard, _above(guard, config)) for guard, _ in _named(spots, "E", (label,)))
+    return [(guard, group) for guard, group in found if isinstance(group, Group) and group.operator == "#"]
+
+
+def _above(spot: Spot, config: Config) -> Run | None:
+    """The term of which this is a part."""
+    term = config.root(spot.root)
+    for index in spot.path[:-1]:
+        term = parts_of(term)[index]
+    return term if spot.path else None
+
+
 def _killed(killer: Spot, leaf: Leaf, spots: list[Spot], config: Config) -> Iterator[Offer]:
     """`KILL[n]` meets `E[n]`, when no body of n's reaction is in service; an absent guard is an error."""
     (label,) = leaf.arguments
-    found = _named(spots, "E", (label,))
+    found = _guards(label, spots, config)
     if not found:
         yield Offer(("KILL", (label,), AB, ()), ((killer, Ended(False, cause="error")),), config.store)
-    for guard, _ in found:
-        group = config.root(guard.root)
-        for index in guard.path[:-1]:
-            group = parts_of(group)[index]
+    for guard, group in found:
         if all(resting(p) for i, p in enumerate(parts_of(group)) if i != guard.path[-1]):
             yield Offer(("KILL", (label,), OK, ()), ((killer, Ended(True)), (guard, Ended(True))), config.store)
 
@@ -259,7 +270,7 @@ def _killed(killer: Spot, leaf: Leaf, spots: list[Spot], config: Config) -> Iter
 def _retired(leaver: Spot, leaf: Leaf, spots: list[Spot], config: Config) -> Iterator[Offer]:
     """`RETIRE[n]` names `E[n]`: its reaction serves nothing that is asserted after the next RENEW."""
     (label,) = leaf.arguments
-    if _named(spots, "E", (label,)):
+    if _guards(label, spots, config):
         yield Offer(("RETIRE", (label,), OK, ()), ((leaver, Ended(True)),), config.store.retire(label))
     else:
         yield Offer(("RETIRE", (label,), AB, ()), ((leaver, Ended(False, cause="error")),), config.store)
@@ -267,11 +278,8 @@ def _retired(leaver: Spot, leaf: Leaf, spots: list[Spot], config: Config) -> Ite
 
 def _guarding(guard: Spot, leaf: Leaf, spots: list[Spot], config: Config) -> Iterator[Offer]:
     """E[n] guards what stands beside it in a `#`; one that guards nothing is refused, and one of two with one label."""
-    group = config.root(guard.root)
-    for index in guard.path[:-1]:
-        group = parts_of(group)[index]
-    beside = guard.path and isinstance(group, Group) and group.operator == "#"
-    if not beside or len(_named(spots, "E", leaf.arguments)) > 1:
+    mine = _guards(leaf.arguments[0], spots, config) if leaf.arguments else []
+    if len(mine) > 1 or all(other is not guard for other, _ in mine):
         yield Offer(("E", leaf.arguments, AB, ()), ((guard, Ended(False, cause="error")),), config.store)
 
 
