@@ -166,3 +166,15 @@ def test_an_instance_of_a_disabled_situation_is_given_up_when_its_version_ends()
     assert bench.reactor.laws.violations == []
     served = [(e.time, e.data["guard"]) for e in bench.trace.of("entered") if e.data["situation"] == "part"]
     assert all(guard == 4 for time, guard in served if time > 3.5)
+
+
+def test_a_root_that_senses_again_is_at_rest_while_it_does() -> None:
+    """Chaos found it: the call of P[m] stands in a loop of equation (3), which must not count."""
+    bench = Bench()
+    bench.at(0.0, replace(OVERLAPPING, definitions=OVERLAPPING.definitions.replace("Delay[0.1] :;", "Delay[7] ::")))
+    bench.run(30.0)
+    bench.reactor.receive(Adaptation(id=2, kills=(0, 1, 2), removed=("part",)))
+    bench.run(60.0)
+    assert bench.reactor.laws.violations == []
+    assert bench.reactor.reactions == {}
+    assert bench.times("adaptation_applied", id=2)[0] <= 35.0

@@ -191,12 +191,17 @@ class _Body:
         return forks.ForkParts(self.kernel, entries, ok=exits.ok, ab=exits.ab, first=first, decisive=False, where=where)
 
     def rivals(self, parts: tuple[Process, ...], region: Region, exits: Exits, where: Where) -> Instruction:
-        """`#`: each part binds in a region of its own, of which the winner's bindings leave."""
+        """`#`: each part binds in a region of its own, of which the winner's bindings leave.
+
+        Beside a guard loops count anew: what is at rest is asked of what the guard guards, not of what is around it.
+        """
         entries, leaving = [], []
+        guard = self.guard(parts, region)
+        inside = where if guard is None else self.outside
         for part in parts:
             own = Region(region)
             own.declare(part)
-            entries.append(self.process(part, own, self.compiler.rival, where))
+            entries.append(self.process(part, own, self.compiler.rival, inside))
             leaving.append(tuple((own.slot(n), region.slot(n)) for n in exported(part)))
         return forks.ForkParts(
             self.kernel,
@@ -207,7 +212,7 @@ class _Body:
             decisive=True,
             where=where,
             exports=tuple(leaving) if any(leaving) else (),
-            guard=self.guard(parts, region),
+            guard=guard,
         )
 
     def guard(self, parts: tuple[Process, ...], region: Region) -> forks.Guard | None:
