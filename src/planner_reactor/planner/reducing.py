@@ -329,9 +329,7 @@ class Reducer:
             self._agenda.push(segment)
 
     def mark_outdated(self, urgency: int, because: Because, *, given_up: bool = True) -> None:
-        """Everything has to be planned again that rests on what is relaxed now, or missed what is not; also what was
-        `given_up` because it was refused too often.
-        """
+        """Plan again what rests on what is relaxed now, or missed what is not; also what was `given_up`, refused too often."""
         relaxed = self.assuming.beliefs.relaxed
         outdated = [s for s in self.model if s.refinement and not s.refinement.serves(relaxed)]
         self.mark([s for s in outdated if given_up or s.refusals < MOST_REFUSALS], urgency, because)
@@ -373,13 +371,13 @@ class Reducer:
         """Plan again what was in an adaptation that was refused (`why`) or that took too long."""
         flight = self.issuer.not_applied(adaptation)
         self._agenda.release(adaptation)
+        trigger: Trigger = "adaptation_refused" if why else "adaptation_timed_out"
+        because = Because(trigger, str(adaptation))
         if flight is not None and flight.withdrawn is not None:
-            because = Because("adaptation_refused" if why else "adaptation_timed_out", str(adaptation))
             self._come_back(flight.withdrawn[0], because)
         if flight is not None and flight.segment is not None:
             self.abandon()
-            trigger: Trigger = "adaptation_refused" if why else "adaptation_timed_out"
-            self._plan_again(flight, flight.segment, why, Because(trigger, str(adaptation)))
+            self._plan_again(flight, flight.segment, why, because)
 
     def _plan_again(self, flight: UnderWay, situation: Situation, why: str, because: Because) -> None:
         if situation in self.model.roots and situation not in self.model.segments:
