@@ -329,7 +329,7 @@ class Reducer:
             self._agenda.push(segment)
 
     def mark_outdated(self, urgency: int, because: Because, *, given_up: bool = True) -> None:
-        """Plan again what rests on what is relaxed now, or missed what is not; also what was `given_up`, refused too often."""
+        """Plan again what rests on what is relaxed now, or missed what is not; also what was `given_up`."""
         relaxed = self.assuming.beliefs.relaxed
         outdated = [s for s in self.model if s.refinement and not s.refinement.serves(relaxed)]
         self.mark([s for s in outdated if given_up or s.refusals < MOST_REFUSALS], urgency, because)
@@ -348,9 +348,7 @@ class Reducer:
         return segment
 
     def reconsider(self, because: Because, about: Atom | None = None) -> None:
-        """More holds, or more is known, than before: what seemed impossible, or was avoided, may
-        be possible now.
-        """
+        """More holds, or is known, than before: what seemed impossible, or was avoided, may be possible now."""
         self.abandon()
         again = []
         for segment in self.segments:
