@@ -165,10 +165,10 @@ class Journal:
             raise
         self.state, self.records, self.trusted = state, number, True
 
-    def note(self, record: Record) -> bool:
+    def note(self, record: Record, *, sync: bool = True) -> bool:
         """Write what has happened anyway: if it cannot be made durable it counts all the same, and is a gap."""
         try:
-            self.write(record)
+            self.write(record, sync=sync)
         except DiskError:
             self.state = after(self.state, record)
             return False

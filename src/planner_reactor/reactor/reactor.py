@@ -22,7 +22,7 @@ from planner_reactor.reactor.assumptions import Assumptions
 from planner_reactor.reactor.built_ins import BuiltIns
 from planner_reactor.reactor.composition import undone
 from planner_reactor.reactor.disks import NoDisk
-from planner_reactor.reactor.journal import Halted, Journal, Left, Recovery, Started, State
+from planner_reactor.reactor.journal import Decided, Halted, Journal, Left, Recovery, Started, State
 from planner_reactor.reactor.laws import Laws
 from planner_reactor.reactor.recovery import restore
 from planner_reactor.reactor.structure import bound_of, text_of
@@ -148,7 +148,14 @@ class Reactor:
     # -- adaptation
 
     def receive(self, adaptation: Adaptation) -> None:
-        """Take an adaptation: refused whole, with a reason, or begun (its outcome is a perception)."""
+        """Take an adaptation: refused whole, with a reason, or begun (its outcome is a perception).
+
+        A repeat of one that is under way says nothing new: the outcome of the first is that of both.
+        """
+        under_way = (t.adaptation for t in self.transactions.under_way)
+        if any((a.epoch, a.id) == (adaptation.epoch, adaptation.id) for a in under_way):
+            self.trace.record("adaptation_repeated", id=adaptation.id)
+            return
         self.counts["received"] += 1
         self.trace.record("adaptation_received", id=adaptation.id, purpose=adaptation.purpose)
         try:
@@ -160,6 +167,9 @@ class Reactor:
             bound = self.bound(adaptation)
             self.transactions.begin(adaptation, reactions, killed, bound)
         except RefusedError as refusal:
+            committed = self.journal.state.committed
+            if adaptation.epoch == committed.epoch and adaptation.id not in committed.taken:
+                self.journal.note(Decided(adaptation.id, "refused", self.scheduler.now), sync=False)
             self._refused(adaptation, refusal.reason, str(refusal))
             return
         versions = self.journal.state.committed.versions
@@ -301,7 +311,7 @@ class Reactor:
 
     def _reaction_removed(self, label: int) -> None:
         if self.halted:
-            del self.reactions[label]
+            self.reactions.pop(label, None)
             self._forget([label])
             return
         retired = self.reactions.pop(label, None) is None
