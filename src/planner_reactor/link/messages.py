@@ -27,6 +27,7 @@ PerceptionKind = Literal[
     "adaptation_timed_out",  # it exceeded its bound: nothing of it was applied, nothing is inhibited
     "restarted",  # the reactor begins again on its journal; subject = sound or damaged, values = (situation, version)…
     "halted",  # the stop button was pressed: nothing acts, and adaptations are refused, until a reset
+    "storm",  # a situation failed too often and is disabled, or the reactor halted; subject = the situation
     "information",  # data the planner asked for (ΔP, R §7.1); subject = the name asked for
     "error",  # a wrong request, e.g. a guard that is not there
 ]

@@ -24,8 +24,9 @@ class Holding:
         self._situations = situations
         self._sit = sit
         self._waker = waker
-        self._waiting: dict[str, dict[Strand, None]] = {}
+        self._waiting: dict[str, dict[Strand, bool]] = {}  # situation → who waits, and whether for its being disabled
         situations.flipped = self._flipped
+        situations.awaited = lambda name: any(self._waiting.get(name, {}).values())
 
     def __iter__(self) -> Iterator[BuiltIn]:
         yield BuiltIn("DISABLED", self._until(disabled=True), self._left, resting=True)
@@ -37,7 +38,7 @@ class Holding:
             name = str(arguments[0])
             assumption = self._situations.disabled_by(name)
             if (assumption is not None) is not disabled:
-                self._waiting.setdefault(name, {})[strand] = None
+                self._waiting.setdefault(name, {})[strand] = disabled
                 return None
             self._left(strand)
             return STOPPED if assumption is None else Outcome(True, (assumption,))

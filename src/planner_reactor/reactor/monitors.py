@@ -15,7 +15,6 @@ from planner_reactor.runtime import Outcome, Scheduler, Strand, Timer
 from planner_reactor.runtime.sensing import Sensed
 
 
-
 class Monitors:
     """STUB, ASSUMONITOR, HOLDMONITOR and REPORT. `read(a, reading, returns=…)` is given every reading.
 

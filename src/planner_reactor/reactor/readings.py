@@ -15,6 +15,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from math import inf
 
+from planner_reactor.link.messages import PerceptionKind
 from planner_reactor.reactor.assumptions import Assumptions
 from planner_reactor.runtime import Scheduler, Timer
 from planner_reactor.runtime.sensing import PLAIN, Caution, Reading, Sensed
@@ -53,14 +54,14 @@ class Mind:
 
 
 class Readings:
-    """All assumptions' readings. `doubted(assumption, cause)` hears when a sensor begins to say nothing of worth."""
+    """All assumptions' readings. `doubted(kind, assumption, cause)` hears when a sensor begins to be of no worth."""
 
     def __init__(
         self,
         scheduler: Scheduler,
         cautions: Mapping[str, Caution],
         assumptions: Assumptions,
-        doubted: Callable[[str, str], None],
+        doubted: Callable[[PerceptionKind, str, str], None],
     ) -> None:
         self._scheduler = scheduler
         self._cautions = cautions
@@ -68,7 +69,7 @@ class Readings:
         self._doubted = doubted
         self._minds: dict[str, Mind] = {}
         self.doubts = 0  # readings that were stale or stuck
-        self.failing: dict[str, int] = {}  # of those that count as holding: readings in a row that say it fails
+        self._failing: dict[str, int] = {}  # of those that count as holding: readings in a row that say it fails
 
     def mind(self, assumption: str) -> Mind:
         if (mind := self._minds.get(assumption)) is None:
@@ -85,15 +86,19 @@ class Readings:
             return
         mind.recent.append(holds)
         if holds:
-            self.failing.pop(assumption, None)
+            self._failing.pop(assumption, None)
             if returns and assumption in self._assumptions.failed:
                 mind.held_since = self._scheduler.now if mind.held_since is None else mind.held_since
                 self._holds(assumption, mind)
             return
         mind.held_since = None
-        self.failing[assumption] = self.failing.get(assumption, 0) + 1
+        self._failing[assumption] = self._failing.get(assumption, 0) + 1
         if assumption in self._assumptions.failed or mind.recent.count(False) >= mind.caution.fails:
             self._fails(assumption, mind)
+
+    def disbelieved(self) -> list[str]:
+        """The assumptions that were read to fail as often as it takes and count as holding: none (law 14)."""
+        return [a for a, times in self._failing.items() if times >= self.mind(a).caution.fails]
 
     def noticed(self, assumption: str, holds: bool, evidence: str) -> None:
         """A process noticed by itself: a failure is sent again while something rests on it (nobody asks)."""
@@ -118,7 +123,7 @@ class Readings:
         tells = not news or now >= mind.told + mind.caution.hold_off - TIE
         if tells and news:
             mind.told, mind.told_failing = now, True
-        self.failing.pop(assumption, None)
+        self._failing.pop(assumption, None)
         self._assumptions.sensed(assumption, False, tell=tells)
         if not tells:
             self._later(assumption, mind, mind.told + mind.caution.hold_off)
@@ -159,6 +164,6 @@ class Readings:
         if doubt:
             self.doubts += 1
             if doubt != mind.doubt:
-                self._doubted(assumption, doubt)
+                self._doubted("assumption_unknown", assumption, doubt)
         mind.doubt = doubt
         return None if doubt else reading.holds

@@ -4,8 +4,8 @@ declared.
 A `Signature` says what a basic or built-in process takes and returns, how long it may last and how it may
 end. `BUILT_IN` holds the processes of R §4.2 and X §4.1 (ports, time, tests), of R Tables 1 and 2
 (situations, guards) and R §8.3 (stubs, monitors), with ours: DRAIN, POST, HOLDMONITOR, REPORT, DISABLE,
-ENABLE, DISABLED, ENABLED, FREEZE. Their meaning is not here: see `evolves` and `semantics`. A host declares its own processes in the
-same form.
+ENABLE, DISABLED, ENABLED, FREEZE. Their meaning is not here: see `evolves` and `leaves`. A host declares its own
+processes in the same form.
 """
 
 from __future__ import annotations

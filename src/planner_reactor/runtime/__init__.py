@@ -11,7 +11,7 @@ from __future__ import annotations
 from planner_reactor.runtime.budgets import Budgets
 from planner_reactor.runtime.clock import Clock, VirtualClock, WallClock
 from planner_reactor.runtime.executer import Executer, Statistics
-from planner_reactor.runtime.host import Host, World
+from planner_reactor.runtime.host import Host, Watchdog, World
 from planner_reactor.runtime.outcomes import Control, Label, Outcome
 from planner_reactor.runtime.scheduler import Scheduler, Timer
 from planner_reactor.runtime.sensing import Caution, Reading
@@ -38,6 +38,7 @@ __all__ = [
     "Timer",
     "VirtualClock",
     "WallClock",
+    "Watchdog",
     "World",
     "sleep",
 ]

@@ -53,6 +53,17 @@ class World(Protocol):
         """Let a fault happen; False if it cannot strike yet."""
 
 
+class Watchdog(Protocol):
+    """A device that stops the machine, in a controlled way, when it is not kicked in time. It never resumes alone."""
+
+    @property
+    def period(self) -> float:
+        """Seconds between two kicks: well below what it waits for."""
+
+    def kick(self, now: float) -> bool:
+        """The executive is alive at this instant; False if the device has stopped the machine."""
+
+
 class BasicProcess(msgspec.Struct, frozen=True):
     """A registered process: its signature, what runs, and what takes back what it may have begun."""
 
@@ -73,6 +84,7 @@ class Host:
         self.assumptions: dict[str, Callable[[], Sensed]] = {}
         self.cautions: dict[str, Caution] = {}
         self.world: World | None = None
+        self.watchdog: Watchdog | None = None
         self._listeners: list[Listener] = []
 
     @property

@@ -23,7 +23,7 @@ class Reading(msgspec.Struct, frozen=True):
     signal: object = None
 
 
-Sensed: TypeAlias = "bool | None | Reading"
+Sensed: TypeAlias = "bool | Reading | None"
 
 
 class Caution(msgspec.Struct, frozen=True, kw_only=True):
