@@ -4,19 +4,20 @@
 planner, a sentence for people. Nothing is changed here.
 
     repeated   its id was seen before (6)             stale      planned against another version (7)
-    epoch      an older planner's (7)                 mode       not in this version
+    epoch      an older planner's (7)                 mode       there is none of this name
     text       the definitions do not load            labels     kills or adds are not what they should be
     pending    an earlier change of a situation is under way     structure  the reactor would not hang together
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Container, Mapping, Sequence
+from collections.abc import Callable, Collection, Container, Iterable, Iterator, Mapping, Sequence
 
 import msgspec
 
 from planner_reactor.errors import RefusedError, RSError
 from planner_reactor.link.messages import Adaptation
+from planner_reactor.reactor.reactions import Reactions
 from planner_reactor.rs.loading import load
 from planner_reactor.rs.reactions import Reaction, children, cycle, reaction_of
 from planner_reactor.rs.terms import Program, Schema, Value
@@ -56,7 +57,7 @@ def _identity(adaptation: Adaptation, standing: Standing) -> None:
     if adaptation.epoch < standing.epoch:
         raise RefusedError("epoch", f"epoch {adaptation.epoch}, expected at least {standing.epoch}")
     if adaptation.mode not in MODES:
-        raise RefusedError("mode", f"mode {adaptation.mode} is not in this version, expected {' or '.join(MODES)}")
+        raise RefusedError("mode", f"there is no mode {adaptation.mode}, expected {' or '.join(MODES)}")
 
 
 def _versions(adaptation: Adaptation, standing: Standing) -> None:
@@ -111,12 +112,44 @@ def _structure(adaptation: Adaptation, standing: Standing, new: tuple[Reaction, 
             raise RefusedError(
                 "structure", f"P[{reaction.label}] serves {reaction.situation}, which is not among the changes"
             )
-    after = [r for label, r in standing.reactions.items() if label not in adaptation.kills] + list(new)
-    served = {r.situation for r in after}
-    for reaction in after:
-        if orphans := [name for name in reaction.asserts if name not in served]:
+    after = After(Reactions.of(standing.reactions), frozenset(adaptation.kills), new)
+    for reaction in (*new, *after.bereft(killed)):
+        if orphans := [name for name in reaction.asserts if not after.serving(name)]:
             raise RefusedError("structure", f"P[{reaction.label}] asserts {', '.join(orphans)}, which nothing serves")
-    below = children(after)
-    spawned = {r.situation for r in after if r.spawns}
-    if (way := cycle({s: c for s, c in below.items() if s not in spawned})) is not None:
+    named = dict.fromkeys(r.situation for r in (*new, *killed) if r.situation is not None)
+    if (way := after.cycle_from(named)) is not None:
         raise RefusedError("structure", f"a situation is asserted from below itself: {' → '.join(way)}")
+
+
+class After:
+    """The reactions as they will stand. What is asked of it costs what is near the change, not what stands elsewhere.
+    """
+
+    def __init__(self, standing: Reactions, killed: frozenset[int], new: Sequence[Reaction]) -> None:
+        self._standing = standing
+        self._killed = killed
+        self._new = Reactions(new)
+
+    def serving(self, situation: str) -> tuple[Reaction, ...]:
+        staying = (r for r in self._standing.serving(situation) if r.label not in self._killed)
+        return (*staying, *self._new.serving(situation))
+
+    def bereft(self, killed: Iterable[Reaction]) -> Iterator[Reaction]:
+        """The reactions that stay, and assert a situation that these served."""
+        for situation in dict.fromkeys(r.situation for r in killed if r.situation is not None):
+            yield from (r for r in self._standing.asserting(situation) if r.label not in self._killed)
+
+    def cycle_from(self, situations: Iterable[str]) -> tuple[str, ...] | None:
+        """A situation at or below these that is asserted from below itself, with the way round, or None.
+
+        What stands has no cycle: a new one leads through a situation whose reactions change.
+        """
+        below: dict[str, tuple[str, ...]] = {}
+        waiting = list(situations)
+        while waiting:
+            if (name := waiting.pop()) not in below:
+                reactions = self.serving(name)
+                spawned = any(r.spawns for r in reactions)
+                below[name] = () if spawned else children(reactions).get(name, ())
+                waiting += below[name]
+        return cycle(below)

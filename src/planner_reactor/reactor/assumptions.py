@@ -1,8 +1,7 @@
 """What the reactor knows of assumptions, and what follows: behaviour that rests on a failed one is disabled (law 14).
 
-A monitor says that an assumption fails, or that a failed one holds again; a process may notice by itself (through the
-host), and as nobody polls for it, what it noticed is repeated while something rests on it. What is known survives a
-crash with the journal.
+Whether a reading is believed is for `readings`; here it is known that an assumption fails, or that a failed one holds
+again. What is known survives a crash with the journal.
 """
 
 from __future__ import annotations
@@ -11,11 +10,16 @@ from collections.abc import Callable
 
 from planner_reactor.link.messages import PerceptionKind
 from planner_reactor.reactor.journal import Assumed, Journal
+from planner_reactor.reactor.resting import Resting
 from planner_reactor.reactor.situations import Situations
 from planner_reactor.runtime import Scheduler
 
-REPEAT = 2.0
-"""Seconds after which a failure that a process noticed is sent again (R §9.2.3; the monitors' period in R §8.3)."""
+CALM = "Calm("
+
+
+def calm(situation: str) -> str:
+    """What is presumed of every situation: that it does not fail again and again (see `storms`)."""
+    return f"{CALM}{situation})"
 
 
 class Assumptions:
@@ -33,44 +37,47 @@ class Assumptions:
         self._situations = situations
         self._told = told
         self.failed: dict[str, float] = {}
+        self._resting = Resting()
 
     def restored(self) -> None:
         """What the journal knows of: it fails until it is sensed to hold."""
         self.failed = dict.fromkeys(self._journal.state.committed.failed, self._scheduler.now)
 
     def resting_on(self, assumption: str) -> tuple[str, ...]:
-        return self._journal.state.committed.resting_on(assumption)
+        """The situations that rest on it; every situation rests on its own calm, which nobody has to say."""
+        if assumption.startswith(CALM):
+            return (assumption[len(CALM) : -1],)
+        return self._resting.follow(self._journal.state.committed.rests_on).on(assumption)
 
-    def sensed(self, assumption: str, holds: bool) -> None:
-        """A monitor, or a process itself, says that an assumption fails, or that a failed one holds again."""
+    @property
+    def in_use(self) -> tuple[str, ...]:
+        """The assumptions that the reactions rest on, or that were brought in with them and are watched; sorted."""
+        committed = self._journal.state.committed
+        return tuple(sorted({*self._resting.follow(committed.rests_on), *committed.adopted}))
+
+    def sensed(self, assumption: str, holds: bool, *, tell: bool = True) -> None:
+        """It fails, or a failed one holds again: what rests on it is disabled or enabled; `tell` the planner?"""
         now = self._scheduler.now
         if not holds:
             if assumption not in self.failed:
                 self.failed[assumption] = now
                 self._journal.note(Assumed(assumption, False, now))
-            self._told("assumption_failure", assumption)
         elif self.failed.pop(assumption, None) is not None:
             self._journal.note(Assumed(assumption, True, now))
-            self._told("assumption_holds", assumption)
         else:
             return
+        if tell:
+            self._told("assumption_holds" if holds else "assumption_failure", assumption)
         self.enable()
         self.disable()
 
-    def noticed(self, assumption: str, holds: bool, evidence: str) -> None:
-        """A process noticed by itself: a failure is sent again while something rests on it (nobody asks)."""
-        known = assumption in self.failed
-        self.sensed(assumption, holds)
-        if not holds and not known:
-            self._repeat_later(assumption, self.failed[assumption])
+    def storms(self, situation: str) -> None:
+        """It fails too often: its calm has failed."""
+        self.sensed(calm(situation), False, tell=False)
 
-    def _repeat_later(self, assumption: str, since: float) -> None:
-        def repeat() -> None:
-            if self.failed.get(assumption) == since and self.resting_on(assumption):
-                self.sensed(assumption, False)
-                self._repeat_later(assumption, since)
-
-        self._scheduler.call_after(REPEAT, repeat)
+    def calms(self, situation: str) -> None:
+        """It has new reactions, which have not failed yet."""
+        self.sensed(calm(situation), True, tell=False)
 
     def disable(self) -> None:
         """Every situation that rests on a failed assumption is disabled by it."""
@@ -84,5 +91,6 @@ class Assumptions:
         for situation in self._situations.held:
             for owner in [h.owner for h in situation.inhibitions if h.kind == "assumption"]:
                 assumption = str(owner[1])  # type: ignore[index]  # ("assumption", name)
-                if assumption not in self.failed or assumption not in rests_on.get(situation.name, ()):
+                rests = assumption in rests_on.get(situation.name, ()) or assumption == calm(situation.name)
+                if assumption not in self.failed or not rests:
                     self._situations.enable(situation.name, assumption)

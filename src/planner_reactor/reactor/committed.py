@@ -13,6 +13,7 @@ import msgspec
 from msgspec.structs import replace
 
 from planner_reactor.link.messages import Adaptation
+from planner_reactor.reactor.persistent import Persistent
 from planner_reactor.rs.parser import parse_program
 from planner_reactor.rs.printer import show
 from planner_reactor.rs.reactions import REACTION
@@ -65,27 +66,22 @@ class Committed(msgspec.Struct, frozen=True):
 
     def after(self, adaptation: Adaptation) -> Committed:
         """What it is once this adaptation, which was admitted, has been applied."""
-        clauses = {n: text for n, text in self.clauses.items() if n not in adaptation.kills}
-        clauses |= clauses_of(adaptation)
-        versions, rests_on = dict(self.versions), dict(self.rests_on)
-        for change in adaptation.changes:
-            versions[change.situation] = versions.get(change.situation, 0) + 1
-            rests_on[change.situation] = change.assumptions
-        for situation in adaptation.removed:
-            versions[situation] = versions.get(situation, 0) + 1
-            rests_on.pop(situation, None)
+        versions: dict[str, int] = {}
+        for situation in (*(change.situation for change in adaptation.changes), *adaptation.removed):
+            versions[situation] = versions.get(situation, self.versions.get(situation, 0)) + 1
+        rests_on = {c.situation: c.assumptions for c in adaptation.changes if c.situation not in adaptation.removed}
         return replace(
             self,
-            clauses=clauses,
-            versions=versions,
-            rests_on=rests_on,
+            clauses=Persistent.of(self.clauses).changed(clauses_of(adaptation), without=adaptation.kills),
+            versions=Persistent.of(self.versions).changed(versions),
+            rests_on=Persistent.of(self.rests_on).changed(rests_on, without=adaptation.removed),
             adopted=tuple(sorted({*self.adopted, *adaptation.adopts} - {*adaptation.drops})),
             taken=self.taken.with_(adaptation.id),
         )
 
     def without(self, label: int) -> Committed:
         """What it is once this reaction has ended by itself."""
-        return replace(self, clauses={n: text for n, text in self.clauses.items() if n != label})
+        return replace(self, clauses=Persistent.of(self.clauses).changed({}, without=[label]))
 
     def told(self, assumption: str, *, holds: bool) -> Committed:
         """What it is once it is known that an assumption fails, or holds again."""

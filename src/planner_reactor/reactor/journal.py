@@ -99,7 +99,7 @@ class Snapshot(msgspec.Struct, frozen=True, tag="snapshot"):
 
 Record: TypeAlias = Begun | Decided | Assumed | Halted | Left | Started | Snapshot
 
-_encode = msgspec.msgpack.Encoder().encode
+_encode = msgspec.msgpack.Encoder(enc_hook=dict).encode  # persistent mappings are written as plain ones
 _decode = msgspec.msgpack.Decoder(Record).decode
 
 

@@ -15,9 +15,11 @@ import msgspec
 from planner_reactor.link.channels import PerceptionChannel
 from planner_reactor.reactor.adaptation import Transaction, Transactions
 from planner_reactor.reactor.journal import Journal
+from planner_reactor.reactor.persistent import Persistent
+from planner_reactor.reactor.reactions import Reactions
+from planner_reactor.reactor.readings import Readings
 from planner_reactor.reactor.situations import Situations, named
 from planner_reactor.reactor.versions import Lifetime
-from planner_reactor.rs.reactions import Reaction
 from planner_reactor.runtime import Scheduler
 
 CHECKED = (1, 2, 3, 4, 5, 6, 7, 8, 10, 11, 13, 14, 15)
@@ -32,7 +34,8 @@ class Watched(Protocol):
     transactions: Transactions
     perceptions: PerceptionChannel
     journal: Journal
-    reactions: dict[int, Reaction]
+    readings: Readings
+    reactions: Reactions
 
     @property
     def failed(self) -> Mapping[str, float]: ...
@@ -76,7 +79,12 @@ class Laws:
         self.violations: list[Violation] = []
         self.ledgers: list[Callable[[], str]] = []  # further ledgers: "" or what does not balance
         self.interruptions = 0
-        self._applied: set[int] = set()
+        self._disabled_since: dict[str, float] = {}
+        self.frozen = 0  # bodies that a FREEZE stopped, on demand
+        self._applied: set[int] = set()  # ids above `_all_applied`, of the present epoch
+        self._all_applied = 0
+        self._unequal: set[int] = set()  # labels that run and are not in the journal, or the reverse
+        self._written: Mapping[int, str] = {}
         self._added: set[int] = set()  # labels that came to life and whose adaptation has not been looked at yet
         self._promised: list[Transaction] = []  # applied in this step: what they add must be there at its end
         self._seen: dict[int, list[Lifetime]] = {}  # instance → of the reactions that served it
@@ -124,6 +132,16 @@ class Laws:
             self.interruptions += 1
             self.breach(2, f"a body of instance {fields['instance']} of {fields['situation']} was cut off")
 
+    def _holds(self, fields: dict[str, Any]) -> None:
+        if fields["because"] == "assumption":
+            self._disabled_since.setdefault(fields["situation"], self._reactor.scheduler.now)
+
+    def _freezes(self, fields: dict[str, Any]) -> None:
+        """Law 2: what stops a body in service is an explicit FREEZE, and it holds the situation meanwhile."""
+        self.frozen += 1
+        if not self._reactor.situations.named(fields["situation"]).inhibitions:
+            self.breach(2, f"a body of {fields['situation']} was frozen, and nothing holds the situation")
+
     def applied(self, transaction: Transaction) -> None:
         """Laws 1, 4, 6, 7 and 8 of a transaction that has just ended well."""
         adaptation, versions = transaction.adaptation, transaction.before.versions
@@ -132,17 +150,26 @@ class Laws:
         self._promised.append(transaction)
         if left := [label for label in adaptation.kills if label not in transaction.kills]:
             self.breach(1, f"adaptation {adaptation.id} was applied without killing {left}")
-        if adaptation.id in self._applied:
-            self.breach(6, f"adaptation {adaptation.id} was applied twice")
-        self._applied.add(adaptation.id)
         if adaptation.epoch < self._epoch:
             self.breach(7, f"epoch {adaptation.epoch} after {self._epoch}")
-        self._epoch = adaptation.epoch
+        self._once(adaptation.epoch, adaptation.id)
         for change in adaptation.changes:
             if change.base != (version := versions.get(change.situation, 0)):
                 self.breach(7, f"{change.situation} was at version {version}, not at {change.base}")
         if adaptation.id not in self._reactor.journal.state.committed.taken:
             self.breach(8, f"adaptation {adaptation.id} was applied and is not in the journal")
+
+    def _once(self, epoch: int, number: int) -> None:
+        """Law 6: an id is applied at most once. Each planner numbers from 1: few ids have to be remembered."""
+        if epoch != self._epoch:
+            self._epoch, self._all_applied = epoch, 0
+            self._applied.clear()
+        if number in self._applied or 0 < number <= self._all_applied:
+            self.breach(6, f"adaptation {number} was applied twice")
+        self._applied.add(number)
+        while self._all_applied + 1 in self._applied:
+            self._all_applied += 1
+            self._applied.remove(self._all_applied)
 
     # -- how things stand
 
@@ -196,9 +223,19 @@ class Laws:
         """Law 8: what runs is what the journal says, once no change is half-way."""
         if any(t.state == "committed" for t in self._reactor.transactions.under_way):
             return
-        running, written = set(self._reactor.reactions), set(self._reactor.journal.state.committed.clauses)
-        if running != written and not self._reactor.restoring and not self._reactor.halted:
-            self.breach(8, f"reactions {sorted(running ^ written)} run and are not in the journal, or the reverse")
+        running, written = self._reactor.reactions, self._reactor.journal.state.committed.clauses
+        concerned = running.touched() | self._rewritten(written)
+        self._unequal = {label for label in self._unequal | concerned if (label in running) != (label in written)}
+        if self._unequal and not self._reactor.restoring and not self._reactor.halted:
+            self.breach(8, f"reactions {sorted(self._unequal)} run and are not in the journal, or the reverse")
+
+    def _rewritten(self, written: Mapping[int, str]) -> set[int]:
+        """The labels under which the journal may say something else than when this was asked last."""
+        seen, self._written = self._written, written
+        if seen is written:
+            return set()
+        changed = seen.keys_changed_until(written) if isinstance(seen, Persistent) else None
+        return {*seen, *written} if changed is None else changed
 
     def _perceptions(self) -> None:
         """Law 10: numbered without gaps, at least once."""
@@ -229,7 +266,14 @@ class Laws:
         for assumption in self._reactor.failed:
             for situation in self._reactor.resting_on(assumption):
                 if not self._reactor.situations.is_disabled(situation, assumption):
-                        self.breach(14, f"{situation} rests on {assumption}, which has failed, and is not disabled")
+                    self.breach(14, f"{situation} rests on {assumption}, which has failed, and is not disabled")
+        for situation, since in list(self._disabled_since.items()):
+            if self._reactor.situations.disabled_by(situation) is None:
+                del self._disabled_since[situation]
+            elif self._reactor.scheduler.now > since + GRACE and self._reactor.situations.awaited(situation):
+                self.breach(14, f"{situation} is disabled, and its default reaction has not begun")
+        for assumption in self._reactor.readings.disbelieved():
+            self.breach(14, f"{assumption} was read to fail as often as it takes, and counts as holding")
 
     def _halted(self) -> None:
         """Law 15: after HALT no basic process runs, until a reset."""
@@ -242,5 +286,7 @@ _WATCHES: dict[str, Callable[[Laws, dict[str, Any]], None]] = {
     "asserted": Laws._asserts,
     "completed": Laws._completes,
     "entered": Laws._enters,
+    "frozen": Laws._freezes,
+    "inhibited": Laws._holds,
     "left": Laws._leaves,
 }

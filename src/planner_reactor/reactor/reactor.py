@@ -22,19 +22,24 @@ from planner_reactor.reactor.assumptions import Assumptions
 from planner_reactor.reactor.built_ins import BuiltIns
 from planner_reactor.reactor.composition import undone
 from planner_reactor.reactor.disks import NoDisk
-from planner_reactor.reactor.journal import Decided, Halted, Journal, Left, Recovery, Started, State
+from planner_reactor.reactor.freezing import Freezer
+from planner_reactor.reactor.heartbeat import Heartbeat
+from planner_reactor.reactor.journal import Decided, Journal, Left
 from planner_reactor.reactor.laws import Laws
-from planner_reactor.reactor.recovery import restore
+from planner_reactor.reactor.life import Life
+from planner_reactor.reactor.reactions import Reactions
+from planner_reactor.reactor.readings import Readings
+from planner_reactor.reactor.storms import Intensity, Storms
 from planner_reactor.reactor.structure import bound_of, text_of
 from planner_reactor.reactor.versions import Lifetime
 from planner_reactor.rs.parser import parse_program
 from planner_reactor.rs.reactions import REACTION, Reaction
-from planner_reactor.rs.terms import Call, Value
+from planner_reactor.rs.terms import Value
 from planner_reactor.rs.vocabulary import BUILT_IN
 from planner_reactor.runtime import Budgets, Executer, Host, Root, Scheduler
+from planner_reactor.runtime.sensing import Sensed
 from planner_reactor.trace import Trace
 
-AT_REST = Call("NIL")
 EQUATION_3 = parse_program(f"REACTOR = ADD<m> :: (E[m] # {REACTION}[m])", file="<reactor>")
 
 TOLD_CAUSES = frozenset({"failed", "error", "budget", "assumption"})
@@ -54,13 +59,14 @@ class Reactor:
         budgets: Budgets | None = None,
         observer: Any = None,
         journal: Journal | None = None,
+        intensity: Intensity | None = None,
     ) -> None:
         self.scheduler = scheduler
         self.host = host or Host("none")
         self.perceptions = PerceptionChannel() if perceptions is None else perceptions
         self.trace = trace or Trace(lambda: scheduler.now, keep=False)
         self.budgets = budgets or Budgets()
-        self.reactions: dict[int, Reaction] = {}
+        self.reactions = Reactions()
         self.journal = journal or Journal(NoDisk())
         self.counts: Counter[str] = Counter(received=0, applied=0, refused=0, timed_out=0, changes_applied=0)
         self.stub_triggers = 0
@@ -68,7 +74,6 @@ class Reactor:
         self._laws_due = False
         self._lifetimes: dict[int, Lifetime] = {}
         self._loaded: dict[int, Reaction] = {}
-        self._restoration: Root | None = None
         self.last_applied: Transaction | None = None
         self.laws = Laws(self)
         self._watches: dict[str, Callable[..., None]] = {
@@ -82,7 +87,7 @@ class Reactor:
             scheduler,
             self.host.assumptions,
             notice=self.notice,
-            assumed=self.assumption_sensed,
+            read=self.assumption_sensed,
             reached=self._stub_reached,
             told=self._information,
             commit=self._commit,
@@ -101,49 +106,35 @@ class Reactor:
         built_in.attach(self.executer)
         self.transactions = Transactions(self.executer, scheduler, self.journal, self._finished)
         self.assumptions = Assumptions(scheduler, self.journal, self.situations, self._assumption_told)
-        self.host.listen(self.assumptions.noticed)
+        self.readings: Readings = Readings(scheduler, self.host.cautions, self.assumptions, self._assumption_told)
+        self.host.listen(self.readings.noticed)
+        self.freezer, self.storms, self.heartbeat = Freezer(self), Storms(self, intensity), Heartbeat(self)
+        self._life = Life(self, EQUATION_3)
 
     def start(self) -> Root:
         """Begin to act, on what the journal says: with no reactions yet, if it is new.
 
         `InputError` if the journal is none, `DiskError` if it cannot be read or written.
         """
-        recovery = self.journal.recover()
-        fresh = self.journal.state == State()
-        self.journal.write(Started(self.scheduler.now))
-        if self.halted:
-            self.root = self.executer.start_process(AT_REST, name="halted")
-        else:
-            self.root = self.executer.start("REACTOR")
-            if not fresh:
-                self._restoration = restore(self, recovery, EQUATION_3)
+        self.root = self._life.start()
+        self.heartbeat.start()
         return self.root
 
     @property
     def halted(self) -> bool:
         """Was the stop button pressed, and not yet released by a reset? A crash does not release it."""
-        return self.journal.state.committed.halted
+        return self._life.halted
 
     def halt(self) -> None:
-        """The stop button (law 15): everything is aborted, each basic process with its `abandon`; nothing acts."""
-        if self.halted:
-            return
-        self.journal.note(Halted(True, self.scheduler.now))
-        self.trace.record("halted")
-        self.transactions.halt()
-        for root in list(self.executer.roots):
-            self.executer.kill(root)
-        self.root = self.executer.start_process(AT_REST, name="halted")
-        self.perceive("halted", "stop")
+        """The stop button (law 15): everything is aborted, nothing acts until a reset."""
+        if not self.halted:
+            self.root = self._life.halt()
 
     def reset(self) -> None:
         """Release the stop button: the reactor begins again on its committed structure. Never done by itself."""
         if self.halted:
-            self.journal.write(Halted(False, self.scheduler.now))
-            self.trace.record("reset")
-            self.executer.kill(self.root)
-            self.root = self.executer.start("REACTOR")
-            self._restoration = restore(self, Recovery(self.journal.state), EQUATION_3)
+            self._forget(list(self._loaded))  # what was coming to life as it was halted
+            self.root = self._life.reset()
 
     # -- adaptation
 
@@ -252,6 +243,7 @@ class Reactor:
         if adaptation.mode != "versions":
             self._forget(adaptation.kills)
         self.assumptions.enable()
+        self.storms.changed(transaction.situations)
         self.trace.record(
             "adaptation_applied", id=adaptation.id, purpose=adaptation.purpose, assumptions=self.assumptions_in_use
         )
@@ -330,6 +322,7 @@ class Reactor:
     def _instance_ended(self, situation: str, instance: int, ok: bool, cause: str) -> None:
         if not ok and cause in TOLD_CAUSES:
             self.perceive("situation_failure", situation, cause=cause, instance=instance)
+            self.storms.failed(situation, cause)
 
     def _stub_reached(self, situation: str, instance: int | None) -> None:
         self.stub_triggers += 1
@@ -350,18 +343,18 @@ class Reactor:
     @property
     def assumptions_in_use(self) -> tuple[str, ...]:
         """The assumptions that its reactions rest on, or that were brought in with them and are watched; sorted."""
-        return self.journal.state.committed.assumptions_in_use
+        return self.assumptions.in_use
 
     def resting_on(self, assumption: str) -> tuple[str, ...]:
         return self.assumptions.resting_on(assumption)
 
-    def assumption_sensed(self, assumption: str, holds: bool) -> None:
-        """A monitor, or a process itself, says that an assumption fails, or that a failed one holds again."""
-        self.assumptions.sensed(assumption, holds)
+    def assumption_sensed(self, assumption: str, sensed: Sensed, *, returns: bool = True) -> None:
+        """A reading of an assumption; `returns`: may it say that a failed one holds again?"""
+        self.readings.read(assumption, sensed, returns=returns)
 
-    def _assumption_told(self, kind: PerceptionKind, assumption: str) -> None:
-        self.trace.record(kind, assumption=assumption)
-        self.perceive(kind, assumption)
+    def _assumption_told(self, kind: PerceptionKind, assumption: str, cause: str = "") -> None:
+        self.trace.record(kind, assumption=assumption, **({"cause": cause} if cause else {}))
+        self.perceive(kind, assumption, cause=cause)
 
     # -- how it stands
 
@@ -377,17 +370,15 @@ class Reactor:
     @property
     def restoring(self) -> bool:
         """Is what the journal says still coming to life?"""
-        return self._restoration is not None and self._restoration.outcome is None
+        return self._life.restoring
 
     def commands(self) -> int:
         """How many basic processes run."""
         return self.executer.statistics().basic_running
 
     def over_budget(self) -> str | None:
-        live = self.executer.processes_live
-        if live > self.budgets.processes:
-            return f"{live} processes live, at most {self.budgets.processes}"
-        return None
+        live, most = self.executer.processes_live, self.budgets.processes
+        return f"{live} processes live, at most {most}" if live > most else None
 
     @property
     def versions(self) -> dict[str, int]:

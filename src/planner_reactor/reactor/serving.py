@@ -8,7 +8,7 @@ reaction does not serve.
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Hashable, Mapping
+from collections.abc import Callable, Hashable
 
 from planner_reactor.reactor.instances import Instance, Reaction, Served, Situation, Strand
 from planner_reactor.reactor.versions import Versions
@@ -18,14 +18,12 @@ from planner_reactor.reactor.wakers import Waker
 class Serving:
     """The reactions of all situations, by situation."""
 
-    def __init__(
-        self, situations: Mapping[str, Situation], versions: Versions, waker: Waker, notice: Callable[..., None]
-    ) -> None:
-        self._situations = situations
+    def __init__(self, versions: Versions, waker: Waker, notice: Callable[..., None]) -> None:
         self._versions = versions
         self._waker = waker
         self._notice = notice
         self._services = 0
+        self._below: dict[Hashable, list[tuple[Situation, Reaction]]] = {}  # guard → whom its SITs serve
 
     def deliver(self, situation: Situation, reaction: Reaction, *, opens: bool) -> Instance | None:
         """The least recently served instance that this reaction may serve now (rule SIT).
@@ -34,6 +32,7 @@ class Serving:
         """
         if (served := situation.reactions.get(reaction)) is None:
             served = situation.reactions[reaction] = self._begun(situation, reaction[0])
+            self._below.setdefault(reaction[0], []).append((situation, reaction))
         if situation.blocked:
             return None
         self._services += 1
@@ -85,14 +84,11 @@ class Serving:
     def retire(self, label: Hashable) -> None:
         """RETIRE[n]: the reaction serves nothing that is asserted after the next RENEW."""
         self._versions.retire(label)
-        for situation in self._situations.values():
-            for reaction, served in situation.reactions.items():
-                if reaction[0] == label:
-                    served.last = self._versions.served(label, situation.name)[1]
+        for situation, reaction in self._below.get(label, ()):
+            situation.reactions[reaction].last = self._versions.served(label, situation.name)[1]
 
     def forget_guard(self, label: Hashable) -> None:
         """The reaction with this guard is gone: nobody waits at its SIT any more."""
         self._versions.forget(label)
-        for situation in self._situations.values():
-            for reaction in [g for g in situation.reactions if g[0] == label]:
-                del situation.reactions[reaction]
+        for situation, reaction in self._below.pop(label, ()):
+            del situation.reactions[reaction]

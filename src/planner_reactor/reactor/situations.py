@@ -40,6 +40,7 @@ class Situations:
         self._waker = waker
         self.notice = self._notice = notice
         self.flipped: Callable[[str], None] = lambda name: None  # told when a situation is disabled, or enabled again
+        self.awaited: Callable[[str], bool] = lambda name: False  # does anybody wait for it to be disabled?
         self._by_name: dict[str, Situation] = {}
         self._instances: dict[int, Instance] = {}
         self._awaited: dict[Strand, Instance] = {}
@@ -48,7 +49,7 @@ class Situations:
         self._count = 0
         self._tickets = 0
         self.versions = Versions()
-        self.serving = Serving(self._by_name, self.versions, waker, notice)
+        self.serving = Serving(self.versions, waker, notice)
         self.spawned: set[str] = set()  # served by `::`: may be asserted from below themselves
 
     def named(self, name: str) -> Situation:

@@ -6,10 +6,11 @@ from collections.abc import Mapping
 
 from planner_reactor.link.messages import Adaptation
 from planner_reactor.link.surgeries import drained
+from planner_reactor.reactor.reactions import Reactions
 from planner_reactor.rs.bounds import Bounds
 from planner_reactor.rs.printer import show
 from planner_reactor.rs.reactions import REACTION, Reaction
-from planner_reactor.rs.terms import Process, Program, operands
+from planner_reactor.rs.terms import Process, operands
 from planner_reactor.rs.vocabulary import Signature
 
 MARGIN = 1.0
@@ -34,9 +35,9 @@ def bound_of(
     if adaptation.mode == "versions":
         return MARGIN
 
-    def serving(situation: str) -> tuple[Process, ...]:
-        bodies = (r.schema.body for r in reactions.values() if r.situation == situation)
-        return tuple(operands(body)[1] for body in bodies)
+    standing = Reactions.of(reactions)
 
-    program = Program(r.schema for r in reactions.values())
-    return Bounds(program, signatures, limits, serving).drains(drained(adaptation)) + MARGIN
+    def serving(situation: str) -> tuple[Process, ...]:
+        return tuple(operands(reaction.schema.body)[1] for reaction in standing.serving(situation))
+
+    return Bounds(standing, signatures, limits, serving).drains(drained(adaptation)) + MARGIN

@@ -18,7 +18,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import reduce
 from math import inf
-from typing import TypeAlias
+from typing import Protocol, TypeAlias
 
 import msgspec
 
@@ -35,7 +35,6 @@ from planner_reactor.rs.terms import (
     Par,
     Parameter,
     Process,
-    Program,
     Schema,
     Seq,
     Spawn,
@@ -60,6 +59,12 @@ DEEPEST = 60
 """Calls within calls that are followed: beyond, a definition is taken to call itself."""
 
 
+class Definitions(Protocol):
+    """What a name means: a program, or the reactions of a reactor."""
+
+    def clauses(self, name: str) -> tuple[Schema, ...]: ...
+
+
 class Latest(msgspec.Struct, frozen=True):
     """The latest end in seconds: by stop, by abort (`NEVER` if it cannot be), and at all (`inf`: it need not end)."""
 
@@ -81,7 +86,7 @@ class Bounds:
     """
 
     def __init__(
-        self, program: Program, signatures: Mapping[str, Signature], limits: Mapping[str, float], served: Served
+        self, program: Definitions, signatures: Mapping[str, Signature], limits: Mapping[str, float], served: Served
     ) -> None:
         self._program = program
         self._signatures = signatures

@@ -1,0 +1,140 @@
+"""A reactor of many segments, each of which waits for its own event, and is swapped while it runs.
+
+A root waits for each event of its sensor and asserts a situation; the segment is what serves it, and what serves the
+situation below. The world counts: every event has to lead to its action, whatever was swapped meanwhile; no root may
+begin again but for the next event.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Generator
+from dataclasses import dataclass, field
+
+from planner_reactor.link.messages import Adaptation, Change
+from planner_reactor.reactor.reactor import Reactor
+from planner_reactor.runtime import Host, Scheduler, Signal
+from planner_reactor.runtime.clock import Clock
+
+
+@dataclass(slots=True)
+class Segment:
+    """What the world knows of one segment, and what it is made of."""
+
+    index: int
+    labels: tuple[int, int] = (0, 0)  # of what serves its situation, and of what serves the one below
+    version: int = 0
+    events: int = 0  # that have happened
+    taken: int = 0  # of these, by a root
+    unanswered: set[int] = field(default_factory=set)  # events that have led to no action yet
+    actions: int = 0
+    begun: int = 0  # how often its root began to wait
+    swaps: int = 0
+    signal: Signal = field(default_factory=Signal)
+
+
+class SwapCell:
+    """So many segments in one reactor; `swap` issues an adaptation that replaces one."""
+
+    def __init__(self, count: int, clock: Clock) -> None:
+        self.scheduler = Scheduler(clock, seed=1)
+        self.segments = [Segment(n) for n in range(count)]
+        self.reactor = Reactor(self.scheduler, host=self._host())
+        self.reactor.start()
+        self._label = self._number = 0
+        self.inside = 0  # swaps that a reaction asked for
+        self.perceived = 0
+        self.lost = 0  # perceptions that are missing among the numbers
+        self.outcomes: dict[str, int] = {}
+        for segment in self.segments:
+            self.reactor.receive(self.prepared(segment))
+        self.scheduler.run(self.scheduler.now)
+
+    def _host(self) -> Host:
+        host = Host("swaps")
+
+        @host.process(limit=1e9, results=("n",))
+        def Event(index: float) -> Generator[Signal, None, int]:
+            segment = self.segments[int(index)]
+            segment.begun += 1
+            while segment.taken == segment.events:
+                yield segment.signal
+            segment.taken += 1
+            return segment.taken
+
+        @host.process(window=(0, 0))
+        def Act(index: float, event: float) -> None:
+            segment = self.segments[int(index)]
+            segment.actions += 1
+            segment.unanswered.discard(int(event))
+
+        @host.process(window=(0, 0))
+        def Swap(index: float) -> None:
+            """From inside a reaction: the segment in service swaps another, and every third time itself."""
+            segment = self.segments[int(index)]
+            self.inside += 1
+            other = (segment.index * 7 + segment.actions) % len(self.segments)
+            self.swap(segment if segment.actions % 3 == 0 else self.segments[other])
+
+        return host
+
+    def happen(self, segment: Segment) -> None:
+        """An event of the world."""
+        segment.events += 1
+        segment.unanswered.add(segment.events)
+        segment.signal.fire()
+
+    def prepared(self, segment: Segment, *, swapping: bool = False) -> Adaptation:
+        """The adaptation that replaces the segment as it stands; `swapping`: the new one swaps others when it acts."""
+        top, below, i = self._label + 1, self._label + 2, segment.index
+        self._label += 2
+        self._number += 1
+        fresh = segment.version == 0
+        act = f"Act[{i}, n]" + (f" : Swap[{i}]" if swapping else "")
+        lines = [
+            f"P[{top}] = SIT[s{i}]<k, n> :; (~(REASSERT[t{i}, n] : SUCCEED[s{i}, k]) : FAIL[s{i}, k])",
+            f"P[{below}] = SIT[t{i}]<k, n> :; (~({act} : SUCCEED[t{i}, k]) : FAIL[t{i}, k])",
+        ]
+        adds: tuple[int, ...] = (below, top)
+        if fresh:
+            self._label += 1
+            lines.append(f"P[{self._label}] = Event[{i}]<n> :; REASSERT[s{i}, n]")
+            adds = (below, top, self._label)
+        adaptation = Adaptation(
+            id=self._number,
+            definitions="\n".join(lines),
+            changes=tuple(Change(situation=s, base=segment.version, fresh=fresh) for s in (f"s{i}", f"t{i}")),
+            kills=() if fresh else segment.labels,
+            adds=adds,
+        )
+        segment.labels = (top, below)
+        segment.version += 1
+        segment.swaps += not fresh
+        return adaptation
+
+    def swap(self, segment: Segment, *, swapping: bool = False) -> None:
+        if f"s{segment.index}" not in self.reactor.transactions.pending_situations:
+            self.reactor.receive(self.prepared(segment, swapping=swapping))
+
+    def take(self) -> None:
+        """Read the perceptions, as a planner does."""
+        for perception in self.reactor.perceptions.take():
+            self.perceived += 1
+            self.lost += perception.number - self.perceived
+            self.perceived = perception.number
+            self.outcomes[perception.kind] = self.outcomes.get(perception.kind, 0) + 1
+
+    def counts(self) -> dict[str, int]:
+        """What should be: 0 everywhere. To be asked when nothing is under way."""
+        self.take()
+        stands = self.reactor.executer.statistics()
+        each = len(self.segments)
+        return {
+            "swaps that were not applied": self._number - self.outcomes.get("adaptation_applied", 0),
+            "bystanders restarted": sum(abs(s.begun - 1 - s.taken) for s in self.segments),
+            "events lost": sum(len(s.unanswered) for s in self.segments),
+            "perceptions lost": self.lost,
+            "reactions left over": len(self.reactor.reactions) - 3 * each,
+            "basic processes left over": stands.basic_running - each,
+            "instances left over": len(self.reactor.situations.instances),
+            "violations": len(self.reactor.laws.violations),
+        }

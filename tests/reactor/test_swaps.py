@@ -1,0 +1,62 @@
+"""Segments are swapped in a running reactor, also from inside reactions: nobody else notices, and it costs what it changes.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections import Counter
+from random import Random
+from types import FrameType
+from typing import Any
+
+from benchmarks.swap_cell import SwapCell
+
+from planner_reactor.runtime import VirtualClock
+
+BALANCED = dict.fromkeys(
+    (
+        "swaps that were not applied", "bystanders restarted", "events lost", "perceptions lost",
+        "reactions left over", "basic processes left over", "instances left over", "violations",
+    ),
+    0,
+)  # fmt: skip
+
+
+def test_random_swaps_lose_nothing_and_leave_nothing_behind() -> None:
+    cell, random = SwapCell(40, VirtualClock()), Random(5)
+    for _ in range(400):
+        cell.swap(random.choice(cell.segments), swapping=random.random() < 0.1)
+        for _ in range(random.randrange(3)):
+            cell.happen(random.choice(cell.segments))
+        if random.random() < 0.5:
+            cell.scheduler.run(cell.scheduler.now)
+    cell.scheduler.run(cell.scheduler.now)
+    assert cell.counts() == BALANCED
+    assert sum(segment.swaps for segment in cell.segments) > 400
+    assert cell.inside > 20  # of which so many were issued by a reaction
+
+
+def test_a_swap_costs_what_it_changes_not_what_stands() -> None:
+    """Counted in calls of Python functions: the same among 10 segments and among 300."""
+    assert calls_of_a_swap(300) == calls_of_a_swap(10)
+
+
+def calls_of_a_swap(segments: int) -> int:
+    """The most frequent number of calls that a swap takes (a snapshot of the journal falls among some)."""
+    cell = SwapCell(segments, VirtualClock())
+    counted = Counter[int]()
+    for _ in range(5):
+        adaptation = cell.prepared(cell.segments[3])
+        calls = 0
+
+        def call(frame: FrameType, event: str, argument: Any) -> None:
+            nonlocal calls
+            calls += event in ("call", "c_call")
+
+        sys.setprofile(call)
+        cell.reactor.receive(adaptation)
+        cell.scheduler.run(cell.scheduler.now)
+        sys.setprofile(None)
+        cell.take()
+        counted[calls // 100] += 1  # a few calls depend on the number of digits and the like
+    return counted.most_common(1)[0][0]
