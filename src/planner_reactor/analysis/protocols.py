@@ -4,7 +4,7 @@ A script runs as a root of its own beside the reactor, as in the executer. Bread
 shown by a shortest path, these laws are asked of every state:
 
     safe        no body is cut, and no KILL is reached while its reaction is at work
-    consistent  no instance is served by a reaction that goes and by one that comes
+    consistent  every instance is served by reactions of one structure: before an adaptation, or after it
     atomic      the script never aborts, and nothing waits after its first KILL
     local       what is not named is neither held nor withdrawn, and what is named is not held up before it is drained
     bounded     from every state the script can still end, and no fair run goes round without its end
@@ -27,10 +27,11 @@ from planner_reactor.errors import BudgetError
 from planner_reactor.rs.configurations import Config, Label, World
 from planner_reactor.rs.evolves import started
 from planner_reactor.rs.leaves import elapsed, offers, resting, slack, window
+from planner_reactor.rs.reactions import REACTION, served_by
 from planner_reactor.rs.serving import RULES
-from planner_reactor.rs.states import Await, Ended, InstanceNumber, Leaf, Run, Waiting, parts_of, spots
-from planner_reactor.rs.store import Store
-from planner_reactor.rs.terms import Process, Value
+from planner_reactor.rs.states import Await, Ended, InstanceNumber, Leaf, Reaction, Run, Waiting, parts_of, spots
+from planner_reactor.rs.store import Instance, Store
+from planner_reactor.rs.terms import Number, Process, Schema, Value
 
 Law: TypeAlias = Literal["safe", "consistent", "atomic", "local", "bounded"]
 LAWS: tuple[Law, ...] = ("safe", "consistent", "atomic", "local", "bounded")
@@ -45,8 +46,10 @@ REACTOR, SCRIPT = 1, 2
 class Protocol(msgspec.Struct, frozen=True, kw_only=True):
     """A reactor, a script beside it, and what the script is supposed to do.
 
-    `named` are the situations that it may hold; `kills` and `adds` the labels that go and come. `store` is where it
-    begins (for weaker readings of WAIT, see tests).
+    `named` are the situations that it may hold; `kills` and `adds` the labels that go and come, `later` those of the
+    adaptations that the script makes after the first. A `patient` script also waits for what was retired to go: it
+    must be able to end from every state, which is to end at last if outcomes are fair too. `store` is where it begins
+    (for weaker readings of WAIT, see tests).
     """
 
     reactor: Process
@@ -54,7 +57,21 @@ class Protocol(msgspec.Struct, frozen=True, kw_only=True):
     named: frozenset[str]
     kills: frozenset[Value]
     adds: frozenset[Value]
+    later: tuple[tuple[frozenset[Value], frozenset[Value]], ...] = ()  # kills and adds
+    patient: bool = False
     store: Store = msgspec.field(default_factory=Store)
+
+    @property
+    def removed(self) -> frozenset[Value]:
+        """The labels that go, by any of its adaptations."""
+        return self.kills.union(*(kills for kills, _ in self.later))
+
+    def together(self, guards: Iterable[object]) -> bool:
+        """Do reactions with these labels all belong to one of the structures that there are, one after the other?"""
+        rounds = [(self.kills, self.adds), *self.later]
+        first = max(next((n for n, (_, adds) in enumerate(rounds, 1) if g in adds), 0) for g in guards)
+        last = min(next((n for n, (kills, _) in enumerate(rounds) if g in kills), len(rounds)) for g in guards)
+        return first <= last
 
 
 class Counterexample(msgspec.Struct, frozen=True):
@@ -173,19 +190,34 @@ class _Search:
         for reaction, number in after.store.served:
             served.setdefault(number, set()).add(reaction.guard)
         for number, guards in served.items():
-            if guards & self.protocol.kills and guards & self.protocol.adds:
+            if not self.protocol.together(guards):
                 situation = next(i.situation for i in after.store.instances if i.number == number)
                 yield "consistent", f"an instance of {situation} is served by the old reaction and by the new one"
+        if self.done(after):
+            for instance in after.store.instances:
+                if self._left_alone(instance, after):
+                    yield "consistent", f"an instance of {instance.situation} is left that no reaction serves"
+
+    def _left_alone(self, instance: Instance, after: Config) -> bool:
+        """Is it one that a removed reaction would have served, and nobody serves or may serve?"""
+        store = after.store
+        if instance.status != "on" or instance.withdrawn or store.in_service(instance.number):
+            return False
+        clauses = {n: c for c in self.world.program.clauses(REACTION) for n in _labels(c)}
+        serving = [n for n, clause in clauses.items() if served_by(clause.body) == instance.situation]
+        return not self.protocol.removed.isdisjoint(serving) and not any(
+            _guarded(after, n) is not None and store.serves(Reaction(n, None), instance) for n in serving
+        )
 
     def _may_be_inconsistent(self, state: Config) -> bool:
         """Is an instance alive that a removed reaction has served?"""
-        return bool(self.protocol.adds) and any(r.guard in self.protocol.kills for r, _ in state.store.served)
+        return bool(self.protocol.adds) and any(r.guard in self.protocol.removed for r, _ in state.store.served)
 
     def _atomic(self, after: Config) -> Iterator[tuple[Law, str]]:
         term = after.root(SCRIPT)
         if isinstance(term, Ended) and not term.ok:
             yield "atomic", "the script aborts half-way"
-        if not _waits(term):
+        if self.protocol.patient or not _waits(term):
             return
         gone = [n for n in self.protocol.kills if _guarded(after, n) is None]
         if gone:
@@ -214,12 +246,12 @@ class _Search:
         goal = [n for n, state in enumerate(self.states) if self.done(state)]
         reaching = self._reaching(goal)
         trapped = next((n for n in range(len(self.states)) if n not in reaching), None)
-        lasso = self._lasso({n for n in range(len(self.states)) if not self.done(self.states[n])})
+        waiting = {n for n, state in enumerate(self.states) if not self.done(state)}
+        lasso = None if self.protocol.patient else self._lasso(waiting)
         stuck = None
         if trapped is not None:
             stuck = Counterexample("bounded", "from here on the script cannot end", self.path(trapped))
-        found = [c for c in (stuck, lasso) if c is not None]
-        return min(found, key=lambda c: len(c.path), default=None)
+        return stuck or lasso
 
     def _reaching(self, goal: Iterable[int]) -> set[int]:
         before: dict[int, list[int]] = {}
@@ -349,6 +381,11 @@ def _at_work(term: Run, world: World) -> bool:
     if isinstance(term, Leaf):
         return term.name not in RULES and window(term, world)[1] > 0
     return any(_at_work(part, world) for part in parts_of(term))
+
+
+def _labels(clause: Schema) -> Iterator[Value]:
+    """The label of which this is the clause."""
+    return (head.value for head in clause.head[:1] if isinstance(head, Number))
 
 
 def _waits(term: Run) -> bool:

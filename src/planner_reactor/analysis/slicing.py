@@ -24,7 +24,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 import msgspec
 from msgspec.structs import replace
 
-from planner_reactor.rs.reactions import REACTION, Reaction, Surgery, children, reaction_of
+from planner_reactor.rs.reactions import REACTION, Reaction, Surgery, children, reach, reaction_of
 from planner_reactor.rs.terms import (
     STOP,
     All,
@@ -128,16 +128,6 @@ def apart(reactions: Sequence[Reaction], new: Sequence[Reaction], surgery: Surge
     ]
 
 
-def upside_down(reactions: Sequence[Reaction], surgery: Surgery) -> tuple[str, str] | None:
-    """A situation that is held before one above it: (held first, above it)."""
-    below = children(reactions)
-    for n, later in enumerate(surgery.held):
-        reached = _reached([later], below)
-        if found := [earlier for earlier in surgery.held[:n] if earlier in reached]:
-            return found[0], later
-    return None
-
-
 def _is_monitor(reaction: Reaction) -> bool:
     return isinstance(reaction.schema.body, Call) and bool(reaction.monitors)
 
@@ -151,18 +141,7 @@ def _kept(reactions: Sequence[Reaction], surgery: Surgery) -> frozenset[str]:
     for parent, names in below.items():
         for name in names:
             above.setdefault(name, []).append(parent)
-    return frozenset(touched | (_reached(touched, below) & _reached(touched, above)))
-
-
-def _reached(start: Iterable[str], onward: Mapping[str, Iterable[str]]) -> set[str]:
-    found: set[str] = set()
-    waiting = list(start)
-    while waiting:
-        for name in onward.get(waiting.pop(), ()):
-            if name not in found:
-                found.add(name)
-                waiting.append(name)
-    return found
+    return frozenset(touched | (reach(touched, below) & reach(touched, above)))
 
 
 def _order(kept: frozenset[str], *many: Iterable[Reaction]) -> list[str]:
@@ -218,15 +197,15 @@ def _left(process: Process, names: Mapping[str, str]) -> Process:
 
 def _call(call: Call, names: Mapping[str, str]) -> Process:
     match call.name, call.arguments:
-        case ("ASSERT" | "REASSERT"), (Symbol(name) | Text(name), *_) if name in names:
+        case (("ASSERT" | "REASSERT"), (Symbol(name) | Text(name), *_)) if name in names:
             return Call(call.name, (Symbol(names[name]),))
         case "SIT", (Symbol(name) | Text(name), *_):
             return Call("SIT", (Symbol(names[name]),), ("k",))
-        case ("SUCCEED" | "FAIL"), (Symbol(name) | Text(name), _) if name in names:
+        case (("SUCCEED" | "FAIL"), (Symbol(name) | Text(name), _)) if name in names:
             return Call(call.name, (Symbol(names[name]), Variable("k")))
-        case ("STOP" | "ABORT" | "NIL"), _:
+        case (("STOP" | "ABORT" | "NIL"), _):
             return call
-        case ("ASSUMONITOR" | "HOLDMONITOR"), _:
+        case (("ASSUMONITOR" | "HOLDMONITOR"), _):
             return Call(call.name, (Symbol("a"), Number(1)))
         case _:
             return WORKS

@@ -8,7 +8,7 @@ too, so that what is verified is what is run.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 import msgspec
 
@@ -80,19 +80,27 @@ def versions_script(surgery: Surgery, killed: Iterable[Reaction]) -> Process:
     steps = [
         *_commit(surgery),
         *(Call("RETIRE" if r.situation is not None else "KILL", (Number(r.label),)) for r in killed),
-        *(Call("RENEW", (Symbol(s),)) for s in surgery.held if s not in surgery.removed),
+        *(Call("RENEW", (Symbol(s),)) for s in surgery.named if s not in surgery.removed),
         *(Call("POST", (Number(n),)) for n in surgery.adds),
     ]
     return cond(*steps) if steps else STOP
 
 
 def removal_script(surgery: Surgery, killed: Iterable[Reaction]) -> Process:
-    """What was retired goes, top-down, once nothing is left that it may serve: `WAITOLD[s] : KILL[old] : …`."""
+    """What was retired goes, top-down, once nothing is left that it may serve: `WAITOLD[s] : KILL[old] : …`.
+
+    A removed situation is renewed when whoever asserted it has gone: what comes back meanwhile is not waited for.
+    """
     steps: list[Process] = []
+    waited: set[str] = set()
     for reaction in killed:
-        if (situation := reaction.situation) is not None:
-            wait = "WAIT" if situation in surgery.removed else "WAITOLD"
-            steps += [Call(wait, (Symbol(situation),)), Call("KILL", (Number(reaction.label),))]
+        if (situation := reaction.situation) is None:
+            continue
+        if situation not in waited:
+            waited.add(situation)
+            ends = ("RENEW", "WAITOLD") if situation in surgery.removed else ("WAITOLD",)
+            steps += [Call(name, (Symbol(situation),)) for name in ends]
+        steps.append(Call("KILL", (Number(reaction.label),)))
     return cond(*steps) if steps else STOP
 
 
@@ -137,6 +145,27 @@ def children(reactions: Iterable[Reaction]) -> dict[str, tuple[str, ...]]:
         if reaction.situation is not None:
             found[reaction.situation] = (*found.get(reaction.situation, ()), *reaction.asserts)
     return found
+
+
+def reach(start: Iterable[str], onward: Mapping[str, Iterable[str]]) -> set[str]:
+    """What can be reached from any of these by one step or more."""
+    found: set[str] = set()
+    waiting = list(start)
+    while waiting:
+        for name in onward.get(waiting.pop(), ()):
+            if name not in found:
+                found.add(name)
+                waiting.append(name)
+    return found
+
+
+def upside_down(order: Sequence[str], below: Mapping[str, Iterable[str]]) -> tuple[str, str] | None:
+    """A situation that comes before one above it: (first, above it), or None."""
+    for n, later in enumerate(order):
+        reached = reach([later], below)
+        if found := [earlier for earlier in order[:n] if earlier in reached]:
+            return found[0], later
+    return None
 
 
 def cycle(below: Mapping[str, tuple[str, ...]]) -> tuple[str, ...] | None:
