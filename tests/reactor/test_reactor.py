@@ -90,7 +90,7 @@ def test_the_bound_is_a_number_computed_from_declared_windows(bench: Bench) -> N
 
 
 REFUSALS: dict[str, tuple[str, Adaptation]] = {
-    "an id twice": ("repeated", FIRST),
+    "an id twice": ("repeated", replace(SECOND, id=1)),
     "another version": ("stale", replace(SECOND, changes=(change("part", 7),))),
     "an older epoch": ("epoch", replace(SECOND, epoch=-1)),
     "another mode": ("mode", replace(SECOND, mode="at once")),

@@ -79,7 +79,7 @@ def test_an_id_that_was_taken_before_the_crash_is_not_taken_again() -> None:
     bench.at(0.0, FIRST)
     bench.run(1.0)
     again = survivor(disk)
-    again.at(1.0, FIRST)
+    again.at(1.0, replace(SECOND, id=1))
     again.run(2.0)
     assert [p.cause for p in again.perceptions() if p.kind == "adaptation_refused"] == ["repeated"]
 

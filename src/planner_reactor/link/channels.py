@@ -39,6 +39,7 @@ class PerceptionChannel:
         cause: str = "",
         instance: int | None = None,
         values: tuple[object, ...] = (),
+        epoch: int = 0,
     ) -> Perception:
         """Send a perception, or count a repeat of one that waits; the perception as it now stands."""
         key = (kind, subject, cause)
@@ -48,8 +49,9 @@ class PerceptionChannel:
             return repeated
         self.sent += 1
         perception = Perception(
-            number=self.sent, time=time, kind=kind, subject=subject, cause=cause, instance=instance, values=values
-        )
+            number=self.sent, time=time, kind=kind, subject=subject, cause=cause, instance=instance, values=values,
+            epoch=epoch,
+        )  # fmt: skip
         self._waiting[self.sent] = perception
         if kind in COALESCED:
             self._open[key] = self.sent

@@ -10,14 +10,19 @@ from typing import TypeAlias
 import msgspec
 
 from planner_reactor.errors import InputError
-from planner_reactor.link.messages import Adaptation, Perception
+from planner_reactor.link.messages import Adaptation, Enquiry, Perception, Standing
 
-Message: TypeAlias = Adaptation | Perception
+Message: TypeAlias = Adaptation | Enquiry | Perception | Standing
 
 LARGEST = 1_000_000
-"""Bytes of the largest message that is decoded."""
+"""Bytes of the largest message that is decoded by who does not expect a larger one."""
 
-_KINDS: dict[str, type[Adaptation] | type[Perception]] = {"adaptation": Adaptation, "perception": Perception}
+LARGEST_STANDING = 16_000_000
+"""The same of who may be told how a whole reactor stands."""
+
+_KINDS: dict[str, type[Message]] = {
+    "adaptation": Adaptation, "enquiry": Enquiry, "perception": Perception, "standing": Standing,
+}  # fmt: skip
 _encode = msgspec.msgpack.Encoder(enc_hook=str).encode
 
 
@@ -26,10 +31,10 @@ def encode(message: Message) -> bytes:
     return _encode([type(message).__name__.lower(), message])
 
 
-def decode(frame: bytes) -> Message:
+def decode(frame: bytes, *, largest: int = LARGEST) -> Message:
     """The message in a frame; `InputError` if it is too large, malformed or of an unknown kind."""
-    if len(frame) > LARGEST:
-        raise InputError(f"a message of {len(frame)} bytes, expected at most {LARGEST}")
+    if len(frame) > largest:
+        raise InputError(f"a message of {len(frame)} bytes, expected at most {largest}")
     try:
         kind, body = msgspec.msgpack.decode(frame, type=tuple[str, msgspec.Raw])
         if kind not in _KINDS:

@@ -21,7 +21,7 @@ PerceptionKind = Literal[
     "situation_failure",  # R §7.3 (3): an instance ended as failed; subject = the situation, cause says why
     "assumption_failure",  # R §7.3 (4): a monitor or a process reports it false; subject = the assumption
     "assumption_holds",  # a failed assumption holds again (R §9.2.3, reinstating); subject = the assumption
-    "assumption_unknown",  # its sensor says nothing of worth; subject = the assumption, cause = stale or stuck
+    "assumption_unknown",  # its sensor says nothing of worth; cause = stale, stuck or unsensed
     "adaptation_applied",  # subject = the adaptation's id
     "adaptation_refused",  # nothing of it was applied; cause says why
     "adaptation_timed_out",  # it exceeded its bound: nothing of it was applied, nothing is inhibited
@@ -67,6 +67,7 @@ class Adaptation(msgspec.Struct, frozen=True, kw_only=True):
     purpose: str = ""
     drops: tuple[str, ...] = ()  # assumptions that no reaction rests on any more once this is applied
     adopts: tuple[str, ...] = ()  # assumptions that a reaction rests on for the first time once this is applied
+    given_up: tuple[str, ...] | None = None  # assumptions that the planner does without by now; None: it does not say
 
 
 class Perception(msgspec.Struct, frozen=True, kw_only=True):
@@ -80,3 +81,29 @@ class Perception(msgspec.Struct, frozen=True, kw_only=True):
     instance: int | None = None
     values: tuple[object, ...] = ()
     count: int = 1
+    epoch: int = 0  # of the adaptation that it answers
+
+
+class Enquiry(msgspec.Struct, frozen=True, kw_only=True):
+    """A planner that begins asks how the reactor stands. What older planners have under way is taken back."""
+
+    enquirer: int
+
+
+class Standing(msgspec.Struct, frozen=True, kw_only=True):
+    """The answer to an `Enquiry`: the structure of the reactor, and the `epoch` that the enquirer shall plan in.
+
+    No other planner has it, and from now on adaptations of older epochs are refused. `clauses` are texts `P[n] = …` in
+    canonical print; `given_up` is what the latest planner said that it does without.
+    """
+
+    enquirer: int
+    epoch: int
+    clauses: dict[int, str] = {}
+    versions: dict[str, int] = {}
+    rests_on: dict[str, tuple[str, ...]] = {}
+    adopted: tuple[str, ...] = ()
+    failed: tuple[str, ...] = ()
+    given_up: tuple[str, ...] = ()
+    highest_label: int = -1
+    halted: bool = False

@@ -26,6 +26,8 @@ from planner_reactor.link.messages import Adaptation
 from planner_reactor.link.surgeries import drained, surgery
 from planner_reactor.reactor.committed import Committed
 from planner_reactor.reactor.journal import Begun, Decided, Journal
+from planner_reactor.reactor.reactions import Reactions
+from planner_reactor.reactor.waiting import refuse_waiting_for_itself
 from planner_reactor.rs.reactions import Reaction, drain_script, removal_script, versions_script, wait_script
 from planner_reactor.rs.terms import Process
 from planner_reactor.runtime import Executer, Root, Scheduler, Timer
@@ -86,8 +88,8 @@ class Transactions:
         self._journal = journal
         self._finished = finished
         self._by_root: dict[Root, Transaction] = {}
-        self._removals: deque[tuple[int, Process]] = deque()
-        self._removing: Root | None = None
+        self._removals: deque[Transaction] = deque()
+        self._removing: tuple[Root, Transaction] | None = None
 
     @property
     def under_way(self) -> tuple[Transaction, ...]:
@@ -96,6 +98,24 @@ class Transactions:
     @property
     def pending_situations(self) -> frozenset[str]:
         return frozenset(s for t in self.under_way for s in t.situations)
+
+    def examine(
+        self,
+        adaptation: Adaptation,
+        killed: tuple[Reaction, ...],
+        present: Reactions,
+        disabled: Callable[[str], object],
+    ) -> None:
+        """Could it stop half-way, or wait for itself? `RefusedError` if so."""
+        refuse_unsafe_kills(adaptation, killed)
+        under_way = [transaction.adaptation for transaction in self.under_way]
+        refuse_waiting_for_itself(adaptation, present, under_way, self.retired, disabled)
+
+    @property
+    def retired(self) -> list[Reaction]:
+        """The reactions that were retired, and may not have gone yet."""
+        removing = () if self._removing is None else (self._removing[1],)
+        return [reaction for t in (*removing, *self._removals) for reaction in t.killed]
 
     def begin(
         self, adaptation: Adaptation, reactions: tuple[Reaction, ...], killed: tuple[Reaction, ...], bound: float
@@ -124,9 +144,10 @@ class Transactions:
     def commit(self, number: int) -> Transaction | None:
         """COMMIT[number]: the journal says that it is applied, before anything of it is. None if it cannot."""
         for transaction in self.under_way:
-            if transaction.adaptation.id == number and transaction.state == "draining":
+            if transaction.adaptation.id == number and transaction.state == "draining" and not transaction.reason:
                 try:
-                    self._journal.write(Decided(number, "applied", self._scheduler.now))
+                    epoch = transaction.adaptation.epoch
+                    self._journal.write(Decided(number, "applied", self._scheduler.now, epoch))
                 except DiskError as problem:
                     transaction.reason = "disk"
                     transaction.problem = f"it cannot be made durable: {problem}"
@@ -152,7 +173,7 @@ class Transactions:
         if transaction is not None:
             # what the last POST adds comes to life within this step: it is over when the step is
             self._executer.after_step(lambda: self._close(root, transaction))
-        elif root is self._removing:
+        elif self._removing is not None and root is self._removing[0]:
             self._removing = None
             self._executer.after_step(self._remove)
 
@@ -163,11 +184,12 @@ class Transactions:
         if root.outcome == "stop":
             transaction.state = "applied"
             if transaction.adaptation.mode == "versions":
-                self._removals.append((transaction.adaptation.id, _removal(transaction)))
+                self._removals.append(transaction)
                 self._remove()
         else:
             transaction.state = "refused" if transaction.reason else "timed_out"
-            self._journal.note(Decided(transaction.adaptation.id, transaction.state, self._scheduler.now))
+            adaptation, now = transaction.adaptation, self._scheduler.now
+            self._journal.note(Decided(adaptation.id, transaction.state, now, adaptation.epoch))
             self._executer.unload([r.schema for r in transaction.reactions])
         self._finished(transaction)
 
@@ -175,6 +197,13 @@ class Transactions:
         """Its bound has passed: the drains are let go, nothing has changed."""
         if transaction.root is not None and transaction.root.outcome is None and transaction.state == "draining":
             self._executer.kill(transaction.root)
+
+    def revoke(self, epoch: int) -> None:
+        """Planners before this epoch have no say any more: what of theirs still drains is taken back."""
+        for transaction in self.under_way:
+            if transaction.adaptation.epoch < epoch and transaction.state == "draining":
+                transaction.reason, transaction.problem = "epoch", f"a planner of epoch {epoch} has taken over"
+                self._expire(transaction)
 
     def halt(self) -> None:
         """The stop button: what is under way comes to nothing, and nothing is removed any more."""
@@ -185,12 +214,10 @@ class Transactions:
     def _remove(self) -> None:
         """What was retired goes in the order of the adaptations: an older parent may still assert what is removed."""
         if self._removing is None and self._removals:
-            number, removal = self._removals.popleft()
-            self._removing = self._executer.start_process(removal, name=f"removal {number}")
-
-
-def _removal(transaction: Transaction) -> Process:
-    return removal_script(surgery(transaction.adaptation), transaction.killed)
+            transaction = self._removals.popleft()
+            removal = removal_script(surgery(transaction.adaptation), transaction.killed)
+            root = self._executer.start_process(removal, name=f"removal {transaction.adaptation.id}")
+            self._removing = root, transaction
 
 
 def refuse_unsafe_kills(adaptation: Adaptation, killed: tuple[Reaction, ...]) -> None:

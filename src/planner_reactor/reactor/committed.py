@@ -8,6 +8,7 @@ situations, bodies, drains) is not kept: a crash ends that, and the world is sen
 from __future__ import annotations
 
 from collections.abc import Mapping
+from zlib import crc32
 
 import msgspec
 from msgspec.structs import replace
@@ -42,6 +43,17 @@ class Taken(msgspec.Struct, frozen=True):
         return Taken(floor, tuple(sorted(above)))
 
 
+REMEMBERED = 64
+"""Of so many applied adaptations it is known what they were, so that they can be acknowledged again."""
+
+_encode = msgspec.msgpack.Encoder(enc_hook=str).encode
+
+
+def digest(adaptation: Adaptation) -> int:
+    """Tells apart adaptations that have the same id."""
+    return crc32(_encode(adaptation))
+
+
 class Committed(msgspec.Struct, frozen=True):
     """The structure of a reactor: clauses by label, and what is known of situations and assumptions."""
 
@@ -54,15 +66,27 @@ class Committed(msgspec.Struct, frozen=True):
     epoch: int = 0
     taken: Taken = Taken()
     halted: bool = False
+    applied: tuple[tuple[int, int], ...] = ()  # (id, digest) of the latest of this epoch
+    given_up: tuple[str, ...] = ()  # assumptions that the latest planner does without
+
+    def claimed(self, epoch: int) -> Committed:
+        """What it is once a planner has been given an epoch of its own."""
+        return replace(self, epoch=epoch, taken=Taken(), applied=())
+
+    def was_applied(self, adaptation: Adaptation) -> bool:
+        """Is it one of the latest that were applied, unchanged?"""
+        return adaptation.epoch == self.epoch and (adaptation.id, digest(adaptation)) in self.applied
 
     def begun(self, adaptation: Adaptation) -> Committed:
         """What it is once this adaptation was admitted: its labels are used, and an older planner's time is over."""
         used = replace(self, highest_label=max([self.highest_label, *adaptation.adds]))
-        return used if adaptation.epoch <= self.epoch else replace(used, epoch=adaptation.epoch, taken=Taken())
+        if adaptation.given_up is not None and adaptation.epoch >= self.epoch:
+            used = replace(used, given_up=adaptation.given_up)
+        return used if adaptation.epoch <= self.epoch else used.claimed(adaptation.epoch)
 
-    def decided(self, number: int) -> Committed:
-        """What it is once an adaptation of its epoch was applied or came to nothing: its id is spent."""
-        return replace(self, taken=self.taken.with_(number))
+    def decided(self, number: int, epoch: int) -> Committed:
+        """What it is once an adaptation was applied or came to nothing: its id is spent, if its epoch is not over."""
+        return replace(self, taken=self.taken.with_(number)) if epoch == self.epoch else self
 
     def after(self, adaptation: Adaptation) -> Committed:
         """What it is once this adaptation, which was admitted, has been applied."""
@@ -70,13 +94,15 @@ class Committed(msgspec.Struct, frozen=True):
         for situation in (*(change.situation for change in adaptation.changes), *adaptation.removed):
             versions[situation] = versions.get(situation, self.versions.get(situation, 0)) + 1
         rests_on = {c.situation: c.assumptions for c in adaptation.changes if c.situation not in adaptation.removed}
+        mine = adaptation.epoch == self.epoch
+        known = (*self.applied[1 - REMEMBERED :], (adaptation.id, digest(adaptation))) if mine else self.applied
         return replace(
-            self,
+            self.decided(adaptation.id, adaptation.epoch),
             clauses=Persistent.of(self.clauses).changed(clauses_of(adaptation), without=adaptation.kills),
             versions=Persistent.of(self.versions).changed(versions),
             rests_on=Persistent.of(self.rests_on).changed(rests_on, without=adaptation.removed),
             adopted=tuple(sorted({*self.adopted, *adaptation.adopts} - {*adaptation.drops})),
-            taken=self.taken.with_(adaptation.id),
+            applied=known,
         )
 
     def without(self, label: int) -> Committed:

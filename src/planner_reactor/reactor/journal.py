@@ -52,6 +52,14 @@ class Decided(msgspec.Struct, frozen=True, tag="decided"):
     id: int
     outcome: Outcome
     time: float
+    epoch: int = 0
+
+
+class Claimed(msgspec.Struct, frozen=True, tag="claimed"):
+    """A planner that begins was given this epoch: those before it have no say any more."""
+
+    epoch: int
+    time: float
 
 
 class Assumed(msgspec.Struct, frozen=True, tag="assumed"):
@@ -97,7 +105,7 @@ class Snapshot(msgspec.Struct, frozen=True, tag="snapshot"):
     time: float
 
 
-Record: TypeAlias = Begun | Decided | Assumed | Halted | Left | Started | Snapshot
+Record: TypeAlias = Begun | Decided | Claimed | Assumed | Halted | Left | Started | Snapshot
 
 _encode = msgspec.msgpack.Encoder(enc_hook=dict).encode  # persistent mappings are written as plain ones
 _decode = msgspec.msgpack.Decoder(Record).decode
@@ -245,12 +253,15 @@ def after(state: State, record: Record) -> State:
             return snapshot
         case Begun(adaptation):
             return replace(state, committed=committed.begun(adaptation), open=(*state.open, adaptation))
-        case Decided(number, outcome):
-            decided = committed.decided(number)
+        case Decided(number, outcome, epoch=epoch):
+            decided = committed.decided(number, epoch)
             for adaptation in state.open:
-                if adaptation.id == number and outcome == "applied":
+                if (adaptation.id, adaptation.epoch) == (number, epoch) and outcome == "applied":
                     decided = committed.after(adaptation)
-            return replace(state, committed=decided, open=tuple(a for a in state.open if a.id != number))
+            still = tuple(a for a in state.open if (a.id, a.epoch) != (number, epoch))
+            return replace(state, committed=decided, open=still)
+        case Claimed(epoch):
+            return replace(state, committed=committed.claimed(epoch))
         case Assumed(assumption, holds):
             return replace(state, committed=committed.told(assumption, holds=holds))
         case Halted(halted):

@@ -15,13 +15,15 @@ from typing import Any
 
 from planner_reactor.errors import InputError, RefusedError
 from planner_reactor.link.channels import PerceptionChannel
-from planner_reactor.link.messages import Adaptation, PerceptionKind
-from planner_reactor.reactor.adaptation import Transaction, Transactions, refuse_unsafe_kills
+from planner_reactor.link.messages import Adaptation, Enquiry, PerceptionKind
+from planner_reactor.link.messages import Standing as Told
+from planner_reactor.reactor.adaptation import Transaction, Transactions
 from planner_reactor.reactor.admission import Standing, examine
 from planner_reactor.reactor.assumptions import Assumptions
 from planner_reactor.reactor.built_ins import BuiltIns
 from planner_reactor.reactor.composition import undone
 from planner_reactor.reactor.disks import NoDisk
+from planner_reactor.reactor.enquiries import repeated, standing
 from planner_reactor.reactor.freezing import Freezer
 from planner_reactor.reactor.heartbeat import Heartbeat
 from planner_reactor.reactor.journal import Decided, Journal, Left
@@ -106,7 +108,7 @@ class Reactor:
         built_in.attach(self.executer)
         self.transactions = Transactions(self.executer, scheduler, self.journal, self._finished)
         self.assumptions = Assumptions(scheduler, self.journal, self.situations, self._assumption_told)
-        self.readings: Readings = Readings(scheduler, self.host.cautions, self.assumptions, self._assumption_told)
+        self.readings: Readings = Readings(scheduler, self.host, self.assumptions, self._assumption_told)
         self.host.listen(self.readings.noticed)
         self.freezer, self.storms, self.heartbeat = Freezer(self), Storms(self, intensity), Heartbeat(self)
         self._life = Life(self, EQUATION_3)
@@ -141,11 +143,9 @@ class Reactor:
     def receive(self, adaptation: Adaptation) -> None:
         """Take an adaptation: refused whole, with a reason, or begun (its outcome is a perception).
 
-        A repeat of one that is under way says nothing new: the outcome of the first is that of both.
+        A repeat of one that is under way says nothing new, of one that was applied it is acknowledged again.
         """
-        under_way = (t.adaptation for t in self.transactions.under_way)
-        if any((a.epoch, a.id) == (adaptation.epoch, adaptation.id) for a in under_way):
-            self.trace.record("adaptation_repeated", id=adaptation.id)
+        if repeated(self, adaptation):
             return
         self.counts["received"] += 1
         self.trace.record("adaptation_received", id=adaptation.id, purpose=adaptation.purpose)
@@ -154,17 +154,23 @@ class Reactor:
                 raise RefusedError("halted", "the reactor is halted, expected a reset first")
             reactions = examine(adaptation, self._standing())
             killed = tuple(self.reactions[label] for label in adaptation.kills)
-            refuse_unsafe_kills(adaptation, killed)
+            self.transactions.examine(adaptation, killed, self.reactions, self.situations.disabled_by)
             bound = self.bound(adaptation)
+            self.transactions.revoke(adaptation.epoch)
             self.transactions.begin(adaptation, reactions, killed, bound)
         except RefusedError as refusal:
             committed = self.journal.state.committed
             if adaptation.epoch == committed.epoch and adaptation.id not in committed.taken:
-                self.journal.note(Decided(adaptation.id, "refused", self.scheduler.now), sync=False)
+                decided = Decided(adaptation.id, "refused", self.scheduler.now, adaptation.epoch)
+                self.journal.note(decided, sync=False)
             self._refused(adaptation, refusal.reason, str(refusal))
             return
         versions = self.journal.state.committed.versions
         self.loaded(reactions, {r.label: versions.get(r.situation or "", 0) + 1 for r in reactions})
+
+    def enquire(self, enquiry: Enquiry) -> Told:
+        """How it stands, for a planner that begins. `RefusedError` if its epoch cannot be made durable."""
+        return standing(self, enquiry)
 
     def undo(self, *, number: int) -> None:
         """Undo the adaptation that was applied last, by one with this id (`InputError` if there is none)."""
@@ -187,7 +193,9 @@ class Reactor:
     def _refused(self, adaptation: Adaptation, reason: str, message: str) -> None:
         self.counts["refused"] += 1
         self.trace.record("adaptation_refused", id=adaptation.id, reason=reason, message=message)
-        self.perceive("adaptation_refused", str(adaptation.id), cause=reason, values=(message,))
+        self.perceive(
+            "adaptation_refused", str(adaptation.id), cause=reason, values=(message,), epoch=adaptation.epoch
+        )
 
     def _commit(self, number: int) -> bool:
         """COMMIT[number]: from here on the adaptation counts, and what now rests on a failed assumption waits."""
@@ -233,7 +241,7 @@ class Reactor:
             return
         self.counts["timed_out"] += 1
         self.trace.record("adaptation_timed_out", id=adaptation.id, bound=transaction.limit)
-        self.perceive("adaptation_timed_out", str(adaptation.id), cause="TIMEOUT")
+        self.perceive("adaptation_timed_out", str(adaptation.id), cause="TIMEOUT", epoch=adaptation.epoch)
 
     def _applied(self, transaction: Transaction) -> None:
         adaptation = transaction.adaptation
@@ -247,7 +255,7 @@ class Reactor:
         self.trace.record(
             "adaptation_applied", id=adaptation.id, purpose=adaptation.purpose, assumptions=self.assumptions_in_use
         )
-        self.perceive("adaptation_applied", str(adaptation.id))
+        self.perceive("adaptation_applied", str(adaptation.id), epoch=adaptation.epoch)
         self.settle_laws()
 
     def _forget(self, labels: Iterable[int]) -> None:
@@ -285,10 +293,11 @@ class Reactor:
         cause: str = "",
         instance: int | None = None,
         values: tuple[Value, ...] = (),
+        epoch: int = 0,
     ) -> None:
         """Tell the planner."""
         self.perceptions.report(
-            kind, subject, time=self.scheduler.now, cause=cause, instance=instance, values=values
+            kind, subject, time=self.scheduler.now, cause=cause, instance=instance, values=values, epoch=epoch
         )
 
     def _reaction_added(self, label: int) -> None:

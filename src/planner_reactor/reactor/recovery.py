@@ -34,8 +34,8 @@ def restore(reactor: Reactor, recovery: Recovery, equation: Program) -> Root:
     reactor.assumptions.restored()
     reactor.assumptions.disable()
     for adaptation in journal.state.open:
-        journal.note(Decided(adaptation.id, "refused", reactor.scheduler.now))
-        reactor.perceive("adaptation_refused", str(adaptation.id), cause=RESTARTED)
+        journal.note(Decided(adaptation.id, "refused", reactor.scheduler.now, adaptation.epoch))
+        reactor.perceive("adaptation_refused", str(adaptation.id), cause=RESTARTED, epoch=adaptation.epoch)
     reactor.trace.record("restored", labels=sorted(committed.clauses), lost=recovery.lost, damaged=recovery.damaged)
     standing = tuple(sorted(committed.versions.items()))
     reactor.perceive("restarted", "damaged" if recovery.damaged else "sound", values=standing)
