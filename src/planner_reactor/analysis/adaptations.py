@@ -108,7 +108,8 @@ class Verifier:
 
         The killed roots, and what is only added, are looked at beside the first.
         """
-        if (wrong := upside_down(surgery.held, children(before))) is not None:
+        below = children(before)
+        if (wrong := upside_down(surgery.held, lambda s: below.get(s, ()))) is not None:
             return Verdict(local=False, bound_s=bound, why=f"{wrong[1]} would be held up at {wrong[0]}, drained first")
         states, verdict = 0, Verdict(bound_s=bound)
         for single in apart(before, coming, surgery):

@@ -141,7 +141,8 @@ def _kept(reactions: Sequence[Reaction], surgery: Surgery) -> frozenset[str]:
     for parent, names in below.items():
         for name in names:
             above.setdefault(name, []).append(parent)
-    return frozenset(touched | (reach(touched, below) & reach(touched, above)))
+    down, up = reach(touched, lambda s: below.get(s, ())), reach(touched, lambda s: above.get(s, ()))
+    return frozenset(touched | (down & up))
 
 
 def _order(kept: frozenset[str], *many: Iterable[Reaction]) -> list[str]:

@@ -8,7 +8,8 @@ too, so that what is verified is what is run.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from typing import TypeAlias
 
 import msgspec
 
@@ -147,21 +148,25 @@ def children(reactions: Iterable[Reaction]) -> dict[str, tuple[str, ...]]:
     return found
 
 
-def reach(start: Iterable[str], onward: Mapping[str, Iterable[str]]) -> set[str]:
+Onward: TypeAlias = Callable[[str], Iterable[str]]
+"""Where one gets from a situation in one step: those that its reactions assert, say."""
+
+
+def reach(start: Iterable[str], onward: Onward) -> set[str]:
     """What can be reached from any of these by one step or more."""
     found: set[str] = set()
     waiting = list(start)
     while waiting:
-        for name in onward.get(waiting.pop(), ()):
+        for name in onward(waiting.pop()):
             if name not in found:
                 found.add(name)
                 waiting.append(name)
     return found
 
 
-def upside_down(order: Sequence[str], below: Mapping[str, Iterable[str]]) -> tuple[str, str] | None:
+def upside_down(order: Sequence[str], below: Onward) -> tuple[str, str] | None:
     """A situation that comes before one above it: (first, above it), or None."""
-    for n, later in enumerate(order):
+    for n, later in enumerate(order[1:], 1):
         reached = reach([later], below)
         if found := [earlier for earlier in order[:n] if earlier in reached]:
             return found[0], later
