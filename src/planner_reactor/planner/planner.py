@@ -20,11 +20,13 @@ from msgspec.structs import replace
 from planner_reactor.analysis.adaptations import Environment
 from planner_reactor.errors import InputError, nearest
 from planner_reactor.link.messages import Mode, Perception
+from planner_reactor.logic.diagnosis import Diagnosis
 from planner_reactor.logic.domain import Domain
 from planner_reactor.logic.formulas import Atom
 from planner_reactor.planner.agenda import ACTIVE_STUB, FAILED_ASSUMPTION, FAILED_SITUATION, QUIESCENT
 from planner_reactor.planner.because import Because
 from planner_reactor.planner.convergence import lacking, unlikelihood
+from planner_reactor.planner.diagnosing import CONVINCING, Diagnosing
 from planner_reactor.planner.explaining import Explanation, explain
 from planner_reactor.planner.foresight import Foresight
 from planner_reactor.planner.goals import chosen_goal
@@ -71,6 +73,7 @@ class Planner:
         self.patience = patience
         self._counts: Counter[str] = Counter()
         self._failures: Counter[str] = Counter()
+        self._diagnosing = Diagnosing()
         self._assuming = Assuming(domain, relax)
         self._issuer = Issuer(self.model, fold, stub_ms, period_ms, mode, epoch)
         self._gate = Gate(mode=mode) if verify else None
@@ -125,6 +128,11 @@ class Planner:
     def impossible(self) -> Mapping[str, str]:
         """Situations for which there is no plan, and why."""
         return {segment.name: segment.impossible for segment in self._reducer.segments if segment.impossible}
+
+    @property
+    def diagnoses(self) -> tuple[Diagnosis, ...]:
+        """Which assumptions the failed situations speak against, with which confidence, the most probable first."""
+        return self._diagnosing.diagnoses(self.model, self._assuming.beliefs)
 
     @property
     def pending(self) -> tuple[int, ...]:
@@ -264,6 +272,7 @@ class Planner:
         """Plan without an assumption from now on."""
         self._counts[cause] += 1
         before = self.unlikelihood
+        self._diagnosing.begin_anew()
         self._assuming.give_up(name, cause)
         self._reducer.convergence.relaxed(name, before, self.unlikelihood)
         self._reducer.abandon()
@@ -288,11 +297,19 @@ class Planner:
                 because = Because("stub_trigger", perception.subject, perception.number)
                 self._reducer.raise_urgency(perception.subject, ACTIVE_STUB, because)
             case "situation_failure":
+                if perception.cause != "assumption":
+                    self._diagnosing.failed(perception.subject, perception.count)
                 self._situation_failed(perception.subject, perception.number)
+            case "storm":
+                self._doubt(perception.subject, perception.number)
             case "assumption_failure":
+                self._diagnosing.sensed(perception.subject, unknown=False)
                 self._assumption_failed(perception.subject, perception.number)
             case "assumption_holds":
+                self._diagnosing.sensed(perception.subject, unknown=False)
                 self._assuming.holds_again(perception.subject)
+            case "assumption_unknown":
+                self._diagnosing.sensed(perception.subject, unknown=True)
             case "information":
                 self._told(perception)
             case "guard_kill" | "error":
@@ -306,9 +323,19 @@ class Planner:
         self._failures[name] += 1
         if self.patience and segment and self._failures[name] >= self.patience:
             self._failures[name] = 0
-            doubtful = self._assuming.least_likely(segment.required)
-            if doubtful is not None and not segment.stale:
-                self._relax(doubtful, "forced", FAILED_ASSUMPTION, number)
+            self._doubt(name, number)
+
+    def _doubt(self, name: str, number: int) -> None:
+        """Give up what the failures of this situation speak against most, or else what is least likely."""
+        segment = self.model.named(name)
+        if segment is None or segment.stale:
+            return
+        convincing = [d for d in self.diagnoses if d.confidence >= CONVINCING]
+        named = [a for diagnosis in convincing for a in diagnosis.assumptions if a in segment.required]
+        diagnosed = next((a for a in named if self._assuming.fails(a)), None)
+        doubtful = diagnosed or self._assuming.least_likely(segment.required)
+        if doubtful is not None:
+            self._relax(doubtful, "forced", FAILED_ASSUMPTION, number)
 
     def _assumption_failed(self, name: str, number: int) -> None:
         if self._assuming.fails(name):

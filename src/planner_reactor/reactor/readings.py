@@ -11,13 +11,13 @@ assumption's `Caution` says; the default is none of it.
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from math import inf
 
 from planner_reactor.link.messages import PerceptionKind
 from planner_reactor.reactor.assumptions import Assumptions
-from planner_reactor.runtime import Scheduler, Timer
+from planner_reactor.runtime import Host, Scheduler, Timer
 from planner_reactor.runtime.sensing import PLAIN, Caution, Reading, Sensed
 
 TIE = 1e-9
@@ -36,7 +36,7 @@ class Mind:
     held_since: float | None = None  # since when every reading of a failed one says that it holds
     signal: object = None
     changed: float = -inf  # when the signal was first as it is
-    doubt: str = ""  # stale or stuck, as long as it is
+    doubt: str = ""  # stale or stuck, as long as it is, or unsensed
     timer: Timer | None = None
 
     def __post_init__(self) -> None:
@@ -59,12 +59,12 @@ class Readings:
     def __init__(
         self,
         scheduler: Scheduler,
-        cautions: Mapping[str, Caution],
+        host: Host,
         assumptions: Assumptions,
         doubted: Callable[[PerceptionKind, str, str], None],
     ) -> None:
         self._scheduler = scheduler
-        self._cautions = cautions
+        self._host = host
         self._assumptions = assumptions
         self._doubted = doubted
         self._minds: dict[str, Mind] = {}
@@ -73,13 +73,15 @@ class Readings:
 
     def mind(self, assumption: str) -> Mind:
         if (mind := self._minds.get(assumption)) is None:
-            caution = self._cautions.get(assumption, PLAIN)
+            caution = self._host.cautions.get(assumption, PLAIN)
             mind = self._minds[assumption] = Mind(caution, assumption in self._assumptions.failed)
         return mind
 
     def read(self, assumption: str, sensed: Sensed, *, returns: bool) -> None:
         """One reading; `returns`: may it say that a failed one holds again?"""
         mind = self.mind(assumption)
+        if assumption not in self._host.assumptions:
+            self._doubt(assumption, mind, "unsensed")
         holds = self._vetted(assumption, mind, sensed) if isinstance(sensed, Reading) else sensed
         if holds is None:
             mind.held_since = None
@@ -163,7 +165,10 @@ class Readings:
         doubt = mind.vet(reading, self._scheduler.now)
         if doubt:
             self.doubts += 1
-            if doubt != mind.doubt:
-                self._doubted("assumption_unknown", assumption, doubt)
-        mind.doubt = doubt
+        self._doubt(assumption, mind, doubt)
         return None if doubt else reading.holds
+
+    def _doubt(self, assumption: str, mind: Mind, doubt: str) -> None:
+        if doubt and doubt != mind.doubt:
+            self._doubted("assumption_unknown", assumption, doubt)
+        mind.doubt = doubt
