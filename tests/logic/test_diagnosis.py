@@ -76,7 +76,7 @@ def test_what_is_certain_is_never_blamed_and_a_single_failure_is_chance() -> Non
     assert diagnose([Record(frozenset("ab"), 0, 50)], dict.fromkeys("ab", 0.2)) == ()
 
 
-# ------------------------------------------------------------------------------------------------- how often it is right
+# ------------------------------------------------------------------------------------------------ how often it is right
 
 
 def toy(seed: int) -> tuple[list[Record], str | None, dict[str, float]]:

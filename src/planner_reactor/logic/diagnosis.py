@@ -43,6 +43,9 @@ class Chances(msgspec.Struct, frozen=True):
     otherwise: float = 0.02
 
 
+USUAL = Chances()
+
+
 def hitting_sets(conflicts: Iterable[Collection[str]], most: int = MOST_AT_ONCE) -> tuple[frozenset[str], ...]:
     """All minimal sets of at most `most` names that meet every conflict, smaller ones first, then by name.
 
@@ -64,7 +67,7 @@ def hitting_sets(conflicts: Iterable[Collection[str]], most: int = MOST_AT_ONCE)
 
 
 def diagnose(
-    records: Sequence[Record], doubts: Mapping[str, float], chances: Chances = Chances()
+    records: Sequence[Record], doubts: Mapping[str, float], chances: Chances = USUAL
 ) -> tuple[Diagnosis, ...]:
     """Every diagnosis of these records, the most probable first; () if nothing has failed.
 

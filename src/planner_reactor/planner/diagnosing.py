@@ -1,9 +1,9 @@
 """Failures that no sensor shows: which assumption do the failed situations speak against (R §10, first flaw)?
 
 The planner hears of failed situations, and knows on which assumptions each rests. What it does not hear is how often
-one was tried; it takes that all were tried as often as the one that failed most. An assumption whose monitor works is in
-little doubt, since its failure would have been told; one that nobody senses, or whose sensor is stale or stuck, is in
-as much doubt as its likelihood says.
+one was tried; it takes that all were tried as often as the one that failed most. An assumption whose monitor works is
+in little doubt, since its failure would have been told; one that nobody senses, or whose sensor is stale or stuck, is
+in as much doubt as its likelihood says.
 """
 
 from __future__ import annotations

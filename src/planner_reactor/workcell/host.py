@@ -7,12 +7,13 @@ fails does so after `REACTION_S` at the earliest, so that retrying a situation a
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from functools import partial, wraps
 from typing import Any
 
 from planner_reactor.runtime.host import Host
 from planner_reactor.runtime.scheduler import Scheduler
+from planner_reactor.runtime.sensing import PLAIN, Caution
 from planner_reactor.runtime.signals import Aborted
 from planner_reactor.trace import Trace
 from planner_reactor.workcell.calibration import PINNED, Calibration
@@ -20,7 +21,7 @@ from planner_reactor.workcell.cell import Cell, Steps
 from planner_reactor.workcell.evidence import ASSUMPTIONS
 from planner_reactor.workcell.kit import SERVOMOTOR, KitSpec
 from planner_reactor.workcell.looking import Looking
-from planner_reactor.workcell.monitors import Monitors
+from planner_reactor.workcell.monitors import CAUTIONS, Monitors
 from planner_reactor.workcell.picking import Picking
 from planner_reactor.workcell.placing import Placing
 from planner_reactor.workcell.plant import Plant
@@ -37,9 +38,10 @@ def host(
     target: int = 0,
     calibration: Calibration = PINNED,
     trace: Trace | None = None,
+    cautions: Mapping[str, Caution] | None = None,
 ) -> Host:
     """A kitting workcell on this scheduler. `target`: the world is finished after so many completed kits (0:
-    never).
+    never); `cautions`: how the readings of its sensors are taken.
     """
     plant = Plant(kit, calibration, scheduler, trace=trace)
     world = World(plant, target=target)
@@ -54,7 +56,9 @@ def host(
         made.process(results=results, window=(0.0, high), outcomes=outcomes, name=name)(paced(routine, scheduler))
     monitors = Monitors(cell)
     for assumption in ASSUMPTIONS:
-        made.assumption(assumption)(partial(monitors.holds, assumption))
+        caution = (cautions or CAUTIONS).get(assumption, PLAIN)
+        made.assumption(assumption, caution)(partial(monitors.reading, assumption))
+    world.sensors = cell.sensors
     return made
 
 

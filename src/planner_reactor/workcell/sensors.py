@@ -73,6 +73,9 @@ class Sensors:
         self._random = plant.scheduler.random("camera")
         self._test_random = plant.scheduler.random("test")
         plant.entered = self._entered
+        self._pictured_at = plant.scheduler.now
+        self._hung: tuple[TrayView, ...] | None = None  # the picture that the camera repeats
+        self._dead_line: tuple[bool, int] | None = None  # what the ready line stands at, and its life sign
 
     def has_picture(self) -> bool:
         """Does the global camera give a picture?"""
@@ -100,7 +103,21 @@ class Sensors:
         """The trays in the tray area, in one picture; None without a picture."""
         if self._plant.dark:
             return None
+        if self._hung is not None:
+            return self._hung
         return tuple([TrayView(tray.tag, tray.pose, tuple(tray.slots)) for tray in self._plant.area.values()])
+
+    def pictured_at(self) -> float:
+        """When the picture was taken that the global camera gives now, or gave last (seconds)."""
+        if not self._plant.dark and self._hung is None:
+            self._pictured_at = self._plant.scheduler.now
+        return self._pictured_at
+
+    def hang(self, *, camera: bool = False, line: bool = False) -> None:
+        """Break sensors: the camera repeats its last picture, the ready line stands still; False: they work again."""
+        self.pictured_at()
+        self._hung = (self.trays() if self._hung is None else self._hung) if camera else None
+        self._dead_line = (self.downstream_ready(), self.downstream_life()) if line else None
 
     def stack_height(self) -> int:
         """How many trays are stacked."""
@@ -137,7 +154,11 @@ class Sensors:
 
     def downstream_ready(self) -> bool:
         """Downstream's ready line."""
-        return self._plant.downstream.ready
+        return self._plant.downstream.ready if self._dead_line is None else self._dead_line[0]
+
+    def downstream_life(self) -> int:
+        """The life sign that comes with the ready line: it counts seconds."""
+        return int(self._plant.scheduler.now) if self._dead_line is None else self._dead_line[1]
 
     def _entered(self, part: Part) -> None:
         plant, draw = self._plant, self._random.random

@@ -18,6 +18,7 @@ from planner_reactor.workcell.disturbances import DISTURBANCES
 from planner_reactor.workcell.ledger import Finding
 from planner_reactor.workcell.plant import Plant
 from planner_reactor.workcell.reading import kind_name, typed
+from planner_reactor.workcell.sensors import Sensors
 
 
 @dataclass(slots=True)
@@ -40,6 +41,7 @@ class World:
         self.plant = plant
         self.target = target
         self.arm: Arm | None = None
+        self.sensors: Sensors | None = None  # which can be made to hang
         self.struck: list[FaultRecord] = []
         self._unsensed: list[FaultRecord] = []
 
