@@ -9,13 +9,15 @@ looked at once; what adds to nothing needs no look at all.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Hashable, Iterable, Mapping, Sequence
 from math import inf, isinf
 
 import msgspec
 
-from planner_reactor.analysis.protocols import LIMIT, Checked, Counterexample, Protocol, check
+from planner_reactor.analysis.forms import Known
+from planner_reactor.analysis.protocols import LIMIT, Checked, Counterexample, Looking, Protocol, checking, finish
 from planner_reactor.analysis.slicing import Slice, Sliced, apart, sliced, unknown_names
+from planner_reactor.analysis.standing import Standing, shape
 from planner_reactor.errors import BudgetError, InputError
 from planner_reactor.rs.bounds import Bounds
 from planner_reactor.rs.configurations import Ending, Label, World
@@ -37,6 +39,12 @@ SMALL = 300
 
 SMALL_VERSIONS = 200
 """The same in mode versions, whose states hold more."""
+
+FEW = 12
+"""Reactions of a slice: of more, every situation is looked at by itself at once."""
+
+RIGHT = Checked({}, 0)
+"""What is known of a shape that is right."""
 
 OPEN = {name: Signature(name, window=(0.0, inf)) for name in ("Works", "Asks")}
 
@@ -81,6 +89,7 @@ class Verifier:
         self.environment = environment
         self._small = min(small, SMALL_VERSIONS) if mode == "versions" else small
         self.seen: dict[Slice, Checked] = {}
+        self.right: set[Hashable] = set()  # shapes of which everything holds, whatever the bound
         self._mode = mode
         self._limit = limit
 
@@ -88,22 +97,51 @@ class Verifier:
         """Verify the surgery that adds `new` to a reactor of the reactions `present`."""
         before, coming = list(present), list(new)
         if vague := [(r, n) for r in (*before, *coming) for n in unknown_names(r.schema.body)]:
-            reaction, name = vague[0]
-            why = f"P[{reaction.label}] asserts a situation that is worked out at run time: {name}"
-            return Verdict(safe=False, local=False, bounded=False, why=why)
-        bound = self.bound(before, surgery)
+            return _refused_as_vague(vague[0][0].label, vague[0][1])
+        return finish(self._verifying(before, coming, surgery, self.bound(before, surgery)))
+
+    def looking(self, standing: Standing, new: Sequence[Known], surgery: Surgery) -> Looking[Verdict]:
+        """The same for a reactor that is kept by situation: what it costs depends on what is touched.
+
+        The verdict of a shape that has come before is known at once; else it comes state by state.
+        """
+        if (vague := standing.vague(new)) is not None:
+            return _refused_as_vague(*vague)
+        bound = self._bound_in(standing, surgery)
+        around = standing.around(new, surgery)
+        alike = shape(around, new, surgery)
+        if alike in self.right:
+            return _verdict(RIGHT, bound, None, surgery, states=0)
+        before = [r.reaction for r in sorted((*around.inside, *around.outside, *around.idle), key=standing.came)]
+        if len(around.inside) + len(new) > FEW and surgery.held:
+            coming = [r.reaction for r in new if r.situation in surgery.held]
+            verdict = yield from self._one_by_one(before, coming, surgery, bound)
+        else:
+            verdict = yield from self._verifying(before, [r.reaction for r in new], surgery, bound)
+        if verdict.holds:
+            self.right.add(alike)
+        return verdict
+
+    def _bound_in(self, standing: Standing, surgery: Surgery) -> float | None:
+        if self.environment is None or self._mode == "wait":
+            return None
+        return 0.0 if self._mode == "versions" else standing.drains(surgery.held, self.environment)
+
+    def _verifying(
+        self, before: list[Reaction], coming: list[Reaction], surgery: Surgery, bound: float | None
+    ) -> Looking[Verdict]:
         part = sliced(before, coming, surgery)
         if (known := self.seen.get(part.slice)) is not None:
             return _verdict(known, bound, part, surgery, states=0)
         try:
-            found = self.seen[part.slice] = _looked_at(part.slice, self._mode, self._small)
+            found = self.seen[part.slice] = yield from _looking(part.slice, self._mode, self._small)
         except BudgetError:
-            return self._one_by_one(before, coming, surgery, bound)
+            return (yield from self._one_by_one(before, coming, surgery, bound))
         return _verdict(found, bound, part, surgery, states=found.states)
 
     def _one_by_one(
         self, before: list[Reaction], coming: list[Reaction], surgery: Surgery, bound: float | None
-    ) -> Verdict:
+    ) -> Looking[Verdict]:
         """What is too large to be looked at as a whole: each situation by itself, and their order.
 
         The killed roots, and what is only added, are looked at beside the first.
@@ -115,7 +153,7 @@ class Verifier:
         for single in apart(before, coming, surgery):
             part = sliced(before, [r for r in coming if r.label in single.adds], single)
             if (found := self.seen.get(part.slice)) is None:
-                found = self.seen[part.slice] = self._alone(part.slice)
+                found = self.seen[part.slice] = yield from self._alone(part.slice)
                 states += found.states
             verdict = _verdict(found, bound, part, surgery, states=states)
             if not verdict.holds:
@@ -126,18 +164,23 @@ class Verifier:
             return Verdict(safe=False, bound_s=bound, why=f"P[{loose[0]}] is killed, and what it serves is not held")
         return verdict
 
-    def _alone(self, part: Slice) -> Checked:
+    def _alone(self, part: Slice) -> Looking[Checked]:
         """One situation by itself.
 
         Versions have many states, and no script of theirs depends on what a body does: where there are more than a few,
         what is known of every small reactor stands for them (docs/decisions/0030).
         """
         if self._mode != "versions":
-            return _looked_at(part, self._mode, self._limit)
+            return (yield from _looking(part, self._mode, self._limit))
         try:
-            return _looked_at(part, self._mode, self._small)
+            return (yield from _looking(part, self._mode, self._small))
         except BudgetError:
             return Checked({}, self._small)
+
+    def forget(self) -> None:
+        """Know no shape any more."""
+        self.seen.clear()
+        self.right.clear()
 
     def bound(self, present: Iterable[Reaction], surgery: Surgery) -> float | None:
         """Seconds in which what is held has been drained; None if nothing is known of the basic processes.
@@ -157,7 +200,12 @@ class Verifier:
         return Bounds(program, self.environment.signatures, self.environment.limits, served).drains(surgery.held)
 
 
-def _looked_at(part: Slice, mode: str, limit: int) -> Checked:
+def _refused_as_vague(label: int, name: str) -> Verdict:
+    why = f"P[{label}] asserts a situation that is worked out at run time: {name}"
+    return Verdict(safe=False, local=False, bounded=False, why=why)
+
+
+def _looking(part: Slice, mode: str, limit: int) -> Looking[Checked]:
     """The script of this mode beside the slice.
 
     Versions: nothing waits but what removes the retired ones, as long as old instances live and no longer.
@@ -174,7 +222,7 @@ def _looked_at(part: Slice, mode: str, limit: int) -> Checked:
             raise InputError(f"mode is {mode}, expected drain, wait or versions")
 
 
-def _checked(part: Slice, script: Process, limit: int, *, patient: bool = False) -> Checked:
+def _checked(part: Slice, script: Process, limit: int, *, patient: bool = False) -> Looking[Checked]:
     protocol = Protocol(
         reactor=part.reactor,
         script=script,
@@ -183,14 +231,14 @@ def _checked(part: Slice, script: Process, limit: int, *, patient: bool = False)
         adds=frozenset(part.surgery.adds),
         patient=patient,
     )
-    return check(protocol, World(Program(part.schemas), OPEN, endings=_endings), limit=limit)
+    return checking(protocol, World(Program(part.schemas), OPEN, endings=_endings), limit=limit)
 
 
 def _endings(name: str, arguments: tuple[Value, ...]) -> Iterable[Ending]:
     return [(True, ())] if name == "Asks" else [(True, ()), (False, ())]
 
 
-def _verdict(found: Checked, bound: float | None, part: Sliced, surgery: Surgery, *, states: int) -> Verdict:
+def _verdict(found: Checked, bound: float | None, part: Sliced | None, surgery: Surgery, *, states: int) -> Verdict:
     endless = bound is not None and isinf(bound)
     first = found.first
     why = f"what serves {', '.join(surgery.held)} may go on for ever" if endless else ""
@@ -201,8 +249,8 @@ def _verdict(found: Checked, bound: float | None, part: Sliced, surgery: Surgery
         local="local" not in found.broken,
         bounded="bounded" not in found.broken and not endless,
         bound_s=bound,
-        why=_meant(first.why, part) if first else why,
-        counterexample=_path(first, part) if first else (),
+        why=_meant(first.why, part) if first and part else why,
+        counterexample=_path(first, part) if first and part else (),
         cycle=first.cycle if first else 0,
         states=states,
     )

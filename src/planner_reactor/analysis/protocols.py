@@ -16,9 +16,9 @@ that starves is seen. Basic processes end at any age within their windows.
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Hashable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Generator, Hashable, Iterable, Iterator, Mapping, Sequence
 from math import inf
-from typing import Literal, TypeAlias
+from typing import Literal, TypeAlias, TypeVar
 
 import msgspec
 
@@ -95,6 +95,21 @@ class Checked(msgspec.Struct, frozen=True):
         return min(self.broken.values(), key=lambda c: len(c.path), default=None)
 
 
+T = TypeVar("T")
+Looking: TypeAlias = Generator[None, None, T]
+"""Work that pauses after every state that it has looked at."""
+
+
+def finish(looking: Looking[T]) -> T:
+    """All of it at once."""
+    while True:
+        try:
+            next(looking)
+        except StopIteration as done:
+            found: T = done.value
+            return found
+
+
 _Way: TypeAlias = tuple[int, frozenset[Hashable]]
 """Where a way round is, and who could have taken a step at every state so far and has not."""
 
@@ -109,8 +124,13 @@ class Move(msgspec.Struct, frozen=True):
 
 def check(protocol: Protocol, world: World, *, limit: int = LIMIT) -> Checked:
     """Ask every law. Raises `BudgetError` above `limit` states."""
+    return finish(checking(protocol, world, limit=limit))
+
+
+def checking(protocol: Protocol, world: World, *, limit: int = LIMIT) -> Looking[Checked]:
+    """The same, state by state."""
     search = _Search(protocol, world)
-    search.run(limit)
+    yield from search.running(limit)
     if (never := search.never_done()) is not None:
         search.broken.setdefault("bounded", never)
     return Checked(search.broken, len(search.states))
@@ -128,7 +148,7 @@ class _Search:
         self.came_from: list[tuple[int, Label] | None] = [None]
         self.broken: dict[Law, Counterexample] = {}
 
-    def run(self, limit: int) -> None:
+    def running(self, limit: int) -> Looking[None]:
         """Reach every state up to the end of the script, and as long as it may be inconsistent after it."""
         numbers = {self.states[0]: 0}
         for here, state in enumerate(self.states):  # grows while it is read
@@ -145,6 +165,7 @@ class _Search:
                             self.broken[law] = Counterexample(law, why, self.path(number))
                 found.append(Move(label, number, actor))
             self.moves.append(tuple(found))
+            yield
 
     def _successors(self, state: Config) -> Iterator[tuple[Label, Config, Hashable]]:
         if self.done(state) and not self._may_be_inconsistent(state):

@@ -26,6 +26,7 @@ from msgspec.structs import replace
 
 from planner_reactor.rs.reactions import REACTION, Reaction, Surgery, children, reach, reaction_of
 from planner_reactor.rs.terms import (
+    ABORT,
     STOP,
     All,
     Call,
@@ -50,6 +51,8 @@ from planner_reactor.rs.terms import (
 
 WORKS = Call("Works")
 ASKS = Call("Asks")
+ENDS = frozenset({WORKS, STOP, ABORT})
+"""After `Works`, a choice among these is `Works`: it ends at any time, either way."""
 AT_ONCE = 2
 """Askers from outside that are told apart: a third adds nothing that two cannot show."""
 
@@ -91,7 +94,7 @@ class Sliced(msgspec.Struct, frozen=True):
 
 def sliced(reactions: Sequence[Reaction], new: Sequence[Reaction], surgery: Surgery) -> Sliced:
     """The slice of an adaptation that adds `new` to a reactor of these `reactions`."""
-    idle = {r.label for r in (*reactions, *new) if _is_monitor(r)}
+    idle = {r.label for r in (*reactions, *new) if is_monitor(r)}
     before, coming = [r for r in reactions if r.label not in idle], [r for r in new if r.label not in idle]
     surgery = replace(
         surgery,
@@ -128,7 +131,8 @@ def apart(reactions: Sequence[Reaction], new: Sequence[Reaction], surgery: Surge
     ]
 
 
-def _is_monitor(reaction: Reaction) -> bool:
+def is_monitor(reaction: Reaction) -> bool:
+    """Is it nothing but a monitor, which is always at rest?"""
     return isinstance(reaction.schema.body, Call) and bool(reaction.monitors)
 
 
@@ -189,7 +193,7 @@ def _left(process: Process, names: Mapping[str, str]) -> Process:
             return WORKS if inner == WORKS else Not(inner)
         case If(test, then, otherwise):
             three = tuple(_left(part, names) for part in (test, then, otherwise))
-            return WORKS if set(three) == {WORKS} else If(*three)
+            return WORKS if three[0] == WORKS and ENDS.issuperset(three[1:]) else If(*three)
         case Loop(condition, body):
             return Loop(_left(condition, names), _left(body, names))
         case Spawn(condition, body):

@@ -8,15 +8,18 @@ adaptation goes out at once; texts are read when a later one needs them.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from msgspec.structs import replace
 
 from planner_reactor.analysis.adaptations import Environment, Verdict, Verifier
+from planner_reactor.analysis.forms import Forms, Known
 from planner_reactor.analysis.labels import show_label
+from planner_reactor.analysis.protocols import Looking, finish
+from planner_reactor.analysis.standing import Standing
 from planner_reactor.errors import RSError
 from planner_reactor.link.messages import Adaptation, Perception
 from planner_reactor.link.surgeries import surgery
-from planner_reactor.rs.parser import parse_program
-from planner_reactor.rs.reactions import Reaction, reaction_of
 
 NOTHING_WAS = Verdict(bound_s=0.0)
 """Of what adds to nothing: nobody can be in its way, and it waits for nobody."""
@@ -31,8 +34,9 @@ class Gate:
         self.withheld: dict[int, Verdict] = {}  # what was not sent, by the adaptation's id
         self._known: set[str] = set()  # situations that an adaptation has named
         self._unread: list[Adaptation] = []
-        self._reactions: dict[int, Reaction] = {}
-        self._under_way: dict[int, tuple[Adaptation, tuple[Reaction, ...]]] = {}  # with what it removes
+        self._forms = Forms()
+        self._standing = Standing()
+        self._under_way: dict[int, tuple[Adaptation, tuple[Known, ...]]] = {}  # with what it removes
 
     def meet(self, environment: Environment) -> None:
         """What is known of the basic processes from now on: bounds are numbers, and what has none is withheld."""
@@ -40,6 +44,10 @@ class Gate:
 
     def examine(self, adaptation: Adaptation) -> Verdict:
         """May it be sent? If so it is taken to be under way."""
+        return finish(self.examining(adaptation))
+
+    def examining(self, adaptation: Adaptation) -> Looking[Verdict]:
+        """The same, with a pause after every state that is looked at: none if the shape is known."""
         named = {change.situation for change in adaptation.changes}
         fresh = all(change.fresh for change in adaptation.changes) and not named & self._known
         if fresh and not adaptation.kills and not adaptation.removed:
@@ -49,19 +57,29 @@ class Gate:
             return NOTHING_WAS
         self._read()
         try:
-            new = _reactions(adaptation)
+            new = self._reactions(adaptation)
         except RSError as problem:
             return self._withhold(adaptation, Verdict(safe=False, why=str(problem)))
-        verdict = self.verifier.verify(self._reactions.values(), new, surgery(adaptation))
+        verdict = yield from self.verifier.looking(self._standing, new, surgery(adaptation))
         if self._patient:
             verdict = replace(verdict, bounded=True)
         if not verdict.holds:
             return self._withhold(adaptation, verdict)
         self._known |= named
-        gone = tuple(self._reactions.pop(n) for n in adaptation.kills if n in self._reactions)
+        gone = tuple(r for r in map(self._standing.remove, adaptation.kills) if r is not None)
         self._under_way[adaptation.id] = adaptation, gone
-        self._reactions |= {reaction.label: reaction for reaction in new}
+        for reaction in new:
+            self._standing.add(reaction)
         return verdict
+
+    def stand(self, clauses: Iterable[str]) -> None:
+        """Another planner's reactions stand in the reactor."""
+        self._standing, self._known = Standing(), set()
+        for reaction in self._forms.read("\n".join(clauses), file="<standing>"):
+            self._standing.add(reaction)
+            self._known |= set() if reaction.situation is None else {reaction.situation}
+        self._unread.clear()
+        self._under_way.clear()
 
     def perceive(self, perception: Perception) -> None:
         """What became of those that were sent."""
@@ -76,8 +94,9 @@ class Gate:
         if number in self._under_way:
             adaptation, gone = self._under_way.pop(number)
             for label in adaptation.adds:
-                self._reactions.pop(label, None)
-            self._reactions |= {reaction.label: reaction for reaction in gone}
+                self._standing.remove(label)
+            for reaction in gone:
+                self._standing.add(reaction)
 
     def _withhold(self, adaptation: Adaptation, verdict: Verdict) -> Verdict:
         self.withheld[adaptation.id] = verdict
@@ -85,15 +104,15 @@ class Gate:
 
     def _read(self) -> None:
         for adaptation in self._unread:
-            self._reactions |= {reaction.label: reaction for reaction in _reactions(adaptation)}
+            for reaction in self._reactions(adaptation):
+                self._standing.add(reaction)
         self._unread.clear()
 
-
-def _reactions(adaptation: Adaptation) -> list[Reaction]:
-    """The reactions that it adds, in the order of its adds."""
-    schemas = parse_program(adaptation.definitions, file=f"<adaptation {adaptation.id}>").schemas
-    found = {r.label: r for r in map(reaction_of, schemas) if r is not None}
-    return [found[label] for label in adaptation.adds if label in found]
+    def _reactions(self, adaptation: Adaptation) -> list[Known]:
+        """The reactions that it adds, in the order of its adds."""
+        read = self._forms.read(adaptation.definitions, file=f"<adaptation {adaptation.id}>")
+        found = {reaction.label: reaction for reaction in read}
+        return [found[label] for label in adaptation.adds if label in found]
 
 
 def reason(adaptation: Adaptation, verdict: Verdict) -> str:

@@ -82,17 +82,23 @@ ENDLESS = Latest(inf, inf, inf)
 class Bounds:
     """Bounds of processes, given the program, the signatures of its leaves and what serves each situation.
 
-    `limits` are those of basic processes, where they are longer than the windows.
+    `limits` are those of basic processes, where they are longer than the windows. `known` are bounds of situations
+    (seconds), which are not worked out again.
     """
 
     def __init__(
-        self, program: Definitions, signatures: Mapping[str, Signature], limits: Mapping[str, float], served: Served
+        self,
+        program: Definitions,
+        signatures: Mapping[str, Signature],
+        limits: Mapping[str, float],
+        served: Served,
+        known: Mapping[str, float] | None = None,
     ) -> None:
         self._program = program
         self._signatures = signatures
         self._limits = limits
         self._served = served
-        self._situations: dict[str, float] = {}
+        self._situations = dict(known or {})
         self._calls: dict[tuple[object, ...], Latest] = {}
         self._depth = 0
 

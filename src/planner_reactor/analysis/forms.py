@@ -1,0 +1,130 @@
+"""Reactions read by their form: one that differs from another in names alone is not parsed again.
+
+A planner that writes the same text for a hundred situations sends a hundred texts of one *form*: the text with its
+names numbered in the order in which they come. Reading does not depend on what names are called, as long as different
+ones stay different, so a form is parsed once, and what a further text means follows from its names. Only names in plain
+lists are numbered (`[a, b + 1]`, `<x>`); a clause with anything else in brackets, or a string, is parsed by itself.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+
+from planner_reactor.analysis.slicing import is_monitor, unknown_names
+from planner_reactor.errors import RSError
+from planner_reactor.rs.parser import parse_program
+from planner_reactor.rs.reactions import REACTION, Reaction, reaction_of
+from planner_reactor.rs.terms import Symbol, Text, calls
+
+CLAUSE = re.compile(rf"\s*{REACTION}\[([0-9]+)\] = (.*\S)\s*", re.ASCII)
+LIST = re.compile(r"\[[\w ,.+*-]*\]|<[\w ,]*>", re.ASCII)
+NAME = re.compile(r"(?<![\w.])[^\W\d]\w*", re.ASCII)
+RESERVED = frozenset({"if", "then", "else"})
+SPEAKS = frozenset({"SIT", "ASSERT", "REASSERT", "SUCCEED", "FAIL"})
+"""The leaves whose first argument is the name of a situation that a slice may keep."""
+
+
+class Form:
+    """What is common to the reactions of one form. `situations` says which of the names are those of situations."""
+
+    def __init__(self, number: int, reaction: Reaction, names: Sequence[str]) -> None:
+        at = {name: n for n, name in enumerate(names)}
+        spoken = dict.fromkeys(_situations(reaction))
+        self.number = number
+        self.situations = tuple(at[name] for name in spoken)
+        self.serves = None if reaction.situation is None else at[reaction.situation]
+        self.asserts = tuple(at[name] for name in reaction.asserts)
+        self.spawns = reaction.spawns
+        self.monitors = is_monitor(reaction)
+        self.unknown = next(unknown_names(reaction.schema.body), None)
+
+
+class Known:
+    """A reaction known by its form and its names; its text is parsed when its terms are asked for."""
+
+    __slots__ = ("_reaction", "_text", "asserts", "form", "label", "names", "situation")
+
+    def __init__(self, label: int, form: Form, names: Sequence[str], text: str, reaction: Reaction | None) -> None:
+        self.label = label
+        self.form = form
+        self.names = tuple([names[n] for n in form.situations])
+        self.situation = None if form.serves is None else names[form.serves]
+        self.asserts = tuple([names[n] for n in form.asserts])
+        self._text = text
+        self._reaction = reaction
+
+    @property
+    def reaction(self) -> Reaction:
+        """The reaction itself."""
+        if self._reaction is None:
+            self._reaction = _parsed(self._text)
+        return self._reaction
+
+
+class Forms:
+    """The forms that came up."""
+
+    def __init__(self) -> None:
+        self._forms: dict[str, tuple[Form, bool]] = {}
+        self._others = 0
+
+    def read(self, definitions: str, *, file: str = "<text>") -> list[Known]:
+        """The reactions among the definitions. Raises `RSError` if they cannot be read."""
+        found = []
+        for line in definitions.splitlines():
+            clause = CLAUSE.fullmatch(line)
+            known = None if clause is None else self._plain(int(clause[1]), clause[2], line)
+            if known is None and line.strip():
+                schemas = parse_program(definitions, file=file).schemas
+                return [self.known(r) for r in map(reaction_of, schemas) if r is not None]
+            if known is not None:
+                found.append(known)
+        return found
+
+    def known(self, reaction: Reaction) -> Known:
+        """A reaction that is a form of its own."""
+        self._others -= 1
+        names = tuple(dict.fromkeys(_situations(reaction)))
+        return Known(reaction.label, Form(self._others, reaction, names), names, "", reaction)
+
+    def _plain(self, label: int, body: str, text: str) -> Known | None:
+        """The reaction of one line, if it is a definition of its own in which every list is plain."""
+        if '"' in body or "//" in body:
+            return None
+        numbers: dict[str, str] = {}
+
+        def numbered(name: re.Match[str]) -> str:
+            return numbers.setdefault(name[0], f"n{len(numbers)}")
+
+        def listed(found: re.Match[str]) -> str:
+            return NAME.sub(numbered, found[0])
+
+        lettered, lists = LIST.subn(listed, body)
+        if lists != body.count("[") + body.count("<") or not RESERVED.isdisjoint(numbers):
+            return None
+        form = self._forms.get(lettered)
+        if form is None:
+            form = self._forms[lettered] = self._new(lettered, tuple(numbers.values()))
+        return Known(label, form[0], tuple(numbers), text, None) if form[1] else None
+
+    def _new(self, lettered: str, names: tuple[str, ...]) -> tuple[Form, bool]:
+        """A new form, and whether it can be read as one."""
+        try:
+            return Form(len(self._forms), _parsed(f"{REACTION}[0] = {lettered}"), names), True
+        except RSError:  # the whole text is parsed instead, which says what is wrong in its own words
+            return Form(len(self._forms), _parsed(f"{REACTION}[0] = STOP"), ()), False
+
+
+def _situations(reaction: Reaction) -> Iterator[str]:
+    for call in calls(reaction.schema.body):
+        match call.arguments:
+            case (Symbol(name) | Text(name), *_) if call.name in SPEAKS:
+                yield name
+
+
+def _parsed(text: str) -> Reaction:
+    (schema,) = parse_program(text).schemas
+    found = reaction_of(schema)
+    assert found is not None
+    return found
