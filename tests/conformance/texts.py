@@ -47,7 +47,7 @@ CONTROLS = (
     "ASSUMONITOR[A, 500] # Delay[1]", "HOLDMONITOR[A, 0]", "REPORT[done, 1]", "SUCCEED[s, 1]", "FAIL[t, 1]",
     "UPDATE[s, 1, 5]", "SIT[t]<k>", "RENEW[s]", "RENEW[t]", "RETIRE[1]", "RETIRE[7]", "RETIRE[9]", "WAITOLD[s]",
     "WAITOLD[t] # Delay[1]", "DISABLED[s]<k>", "DISABLED[t] # Delay[1]", "ENABLED[s]", "ENABLED[t]", "FREEZE[s]",
-    "FREEZE[t]", "FREEZE[s]",
+    "FREEZE[t]", "FREEZE[s]", "MIGRATE[s, 1]", "MIGRATE[t, twice]",
 )  # fmt: skip
 """What scripts are made of."""
 
@@ -59,6 +59,8 @@ HOLDING = (
     "(DISABLE[s, A]) ; (Delay[1]) ; (ENABLE[s, A]) ; (DRAIN[s]) ; (DRAIN[t]) ; (UNINHIBIT[t]) ; (UNINHIBIT[s])",
     "(DISABLE[t, A]) ; (DISABLE[s, B]) ; (DISABLE[t, A]) ; (Delay[2]) ; (ENABLE[s, B])",
     "(Delay[1]) ; (FREEZE[t]) ; (Delay[1]) ; (FREEZE[s]) ; (Delay[1]) ; (UNINHIBIT[s]) ; (UNINHIBIT[t])",
+    "(DISABLE[s, A]) ; (Delay[1]) ; (MIGRATE[s, twice]) ; (Delay[1]) ; (ENABLE[s, A])",
+    "(DRAIN[t]) ; (Delay[1]) ; (MIGRATE[t, 2]) ; (DRAIN[s]) ; (Delay[1]) ; (MIGRATE[s, broken])",
 )
 """Scripts that hold ASSERTs back while those who made them come to their ends."""
 
@@ -82,6 +84,9 @@ ADAPTING = (
     "(Delay[0.5]) ; (FREEZE[s]) ; (KILL[1]) ; (DRAIN[s]) ; (POST[7])",
     "((DISABLED[t]) :; (ASSERT[s, 1] ; ENABLED[t])) | ((Delay[1]) ; (DISABLE[t, A]) ; (Delay[2]) ; (ENABLE[t, A]))",
     "(Delay[0.5]) ; (KILL[3] # Delay[1]) ; (KILL[3] # Delay[2]) ; (KILL[2] # Delay[1])",
+    "(DRAIN[s]) : (Delay[0.5]) : (MIGRATE[s, twice]) : (KILL[3]) : (POST[3]) : (Delay[0.5]) : (UNINHIBIT[s])",
+    "(DISABLE[s, A]) : (Delay[1]) : (MIGRATE[s, 1]) : (KILL[3]) : (DISABLE[s, B]) : (ENABLE[s, B]) : (ENABLE[s, A])",
+    "(DISABLE[t, A]) : (Slow) : (MIGRATE[t, 1]) : ((KILL[3] # Delay[1]) | (FREEZE[s])) ; (ENABLE[t, A])",
     "(RENEW[t]) : (POST[8]) : (RETIRE[2]) : (RETIRE[2]) : (WAITOLD[t]) : (KILL[2]) : (POST[2])",
 )
 """Scripts that change reactions, well and badly."""
@@ -144,7 +149,8 @@ class _Texts:
         guarded = [f"(E[{n}] # {text})" if draw.random() < 0.6 else text for n, text in enumerate(served, 1)]
         drivers = [f"({self.process(self.depth, [], True)})" for _ in range(draw.choice(twice))]
         if draw.random() < 0.4:  # a reaction without a SIT, as the root reactions of R Fig. 8
-            drivers[0] = f"(E[3] # {draw.choice([drivers[0], drivers[0], '(Delay[1] :; ASSERT[s, 1])'])})"
+            roots = [drivers[0], drivers[0], "(Delay[1] :; ASSERT[s, 1])", "(ASSERT[s, 1] :; Quick)"]
+            drivers[0] = f"(E[3] # {draw.choice(roots)})"
         if draw.random() < 0.4:
             definitions += [f"React[{n}] = {self.reaction(draw.choice('st'))}" for n in (7, 8)]
             guarded.append("(ADD<m> :: (E[m] # React[m]))")

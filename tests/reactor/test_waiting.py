@@ -141,8 +141,7 @@ def test_two_that_would_wait_for_each_other_are_not_taken_together(modes: str, r
 
 def test_they_would_indeed() -> None:
     case = Case("crossed", ONCE, crossed(2, "x", "y"))
-    one, other = ("WAITINHIBIT[x] : WAITINHIBIT[y] : UNINHIBIT[x] : UNINHIBIT[y]",
-                  "WAITINHIBIT[z] : WAITINHIBIT[w] : UNINHIBIT[z] : UNINHIBIT[w]")  # fmt: skip
+    one, other = "WAITINHIBIT[x] : WAITINHIBIT[y]", "WAITINHIBIT[z] : WAITINHIBIT[w]"
     together = looked_at(case, f"({one}) & ({other})", patient=True)
     assert together.broken["bounded"].why == "from here on the script cannot end"
     for alone in (one, other):

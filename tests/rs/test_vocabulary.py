@@ -8,7 +8,7 @@ from planner_reactor.rs.vocabulary import BUILT_IN, NEVER_ENDS, Signature
 def test_every_built_in_process_is_declared_under_its_name() -> None:
     names = """STOP ABORT NIL IN OUT STREAM Delay Term SUSPEND Ran GTR LST Equal
         ASSERT REASSERT SIT SUCCEED FAIL UPDATE STUB WAIT INHIBIT UNINHIBIT WAITINHIBIT DRAIN
-        RENEW WAITOLD RETIRE COMMIT KILL E ADD POST DISABLE ENABLE
+        RENEW WAITOLD RETIRE COMMIT MIGRATE KILL E ADD POST DISABLE ENABLE
         DISABLED ENABLED FREEZE ASSUMONITOR HOLDMONITOR REPORT"""
     assert set(BUILT_IN) == set(names.split())
     assert all(signature.name == name for name, signature in BUILT_IN.items())

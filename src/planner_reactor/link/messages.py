@@ -38,13 +38,16 @@ class Change(msgspec.Struct, frozen=True, kw_only=True):
 
     `base` is the version that it was planned against (0 = the situation has no reaction yet); `assumptions` are
     those that the new reactions rest on (a failed assumption disables exactly the situations that name it);
-    `fresh` marks a situation that did not exist, so that nothing of it needs to be waited for.
+    `fresh` marks a situation that did not exist, so that nothing of it needs to be waited for. Where the new reactions
+    take other parameters, `migrate` says what becomes of the arguments of an ASSERT that waits for it, one entry for
+    each new parameter: the place of an old argument, from 1, or the name of a function of all the old ones.
     """
 
     situation: str
     base: int
     assumptions: tuple[str, ...] = ()
     fresh: bool = False
+    migrate: tuple[int | str, ...] | None = None
 
 
 class Adaptation(msgspec.Struct, frozen=True, kw_only=True):

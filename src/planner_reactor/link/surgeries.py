@@ -20,6 +20,10 @@ def surgery(adaptation: Adaptation) -> Surgery:
     """What it does to the structure of the reactor."""
     named = (*(change.situation for change in adaptation.changes), *adaptation.removed)
     return Surgery(
-        held=drained(adaptation), kills=adaptation.kills, adds=adaptation.adds, named=tuple(dict.fromkeys(named)),
+        held=drained(adaptation),
+        kills=adaptation.kills,
+        adds=adaptation.adds,
+        named=tuple(dict.fromkeys(named)),
         removed=adaptation.removed,
-    )  # fmt: skip
+        migrated=tuple((c.situation, c.migrate) for c in adaptation.changes if c.migrate is not None),
+    )

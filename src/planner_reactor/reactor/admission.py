@@ -17,6 +17,7 @@ import msgspec
 
 from planner_reactor.errors import RefusedError, RSError
 from planner_reactor.link.messages import Adaptation
+from planner_reactor.reactor.migrating import refuse_lost_arguments
 from planner_reactor.reactor.reactions import Reactions
 from planner_reactor.rs.loading import load
 from planner_reactor.rs.reactions import Reaction, children, cycle, reaction_of
@@ -41,6 +42,15 @@ class Standing(msgspec.Struct, frozen=True):
 MODES = ("drain", "wait", "versions")
 
 
+def is_text(adaptation: Adaptation) -> bool:
+    """Can it be written down? A lone surrogate cannot; what came over a link always can."""
+    try:
+        msgspec.msgpack.encode(adaptation)
+    except (UnicodeEncodeError, OverflowError):
+        return False
+    return True
+
+
 def examine(adaptation: Adaptation, standing: Standing) -> tuple[Reaction, ...]:
     """The reactions that the adaptation adds, in its order of adds (bottom-up)."""
     _identity(adaptation, standing)
@@ -48,10 +58,13 @@ def examine(adaptation: Adaptation, standing: Standing) -> tuple[Reaction, ...]:
     schemas = _definitions(adaptation, standing)
     new = _labels(adaptation, standing, schemas)
     _structure(adaptation, standing, new)
+    refuse_lost_arguments(adaptation, Reactions.of(standing.reactions), new, standing.functions)
     return new
 
 
 def _identity(adaptation: Adaptation, standing: Standing) -> None:
+    if not is_text(adaptation):
+        raise RefusedError("text", "it holds characters that are no text, or numbers beyond 64 bits")
     if adaptation.id in standing.taken:
         raise RefusedError("repeated", f"adaptation {adaptation.id} was taken before")
     if adaptation.epoch < standing.epoch:

@@ -42,7 +42,7 @@ class BuiltIns:
         self._waker = ExecuterWaker()
         self.situations = Situations(self._waker, notice)
         self.guards = Guards(self.situations, self._waker, notice)
-        situation_processes = Controls(self.situations)
+        situation_processes = self._processes = Controls(self.situations)
         self._waker.ended_wait = situation_processes.granted
         monitors = Monitors(scheduler, assumptions or {}, read, reached, told)
         holding = Holding(self.situations, situation_processes.sit, self._waker)
@@ -52,3 +52,4 @@ class BuiltIns:
 
     def attach(self, executer: Executer) -> None:
         self._waker.executer = executer
+        self._processes.functions = executer.functions

@@ -6,11 +6,12 @@ case by case, in `rs.leaves`. SIT opens a body: what follows it serves the insta
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 
 from planner_reactor.reactor.instances import Instance, Reaction
 from planner_reactor.reactor.situations import Situations
+from planner_reactor.rs.migration import migrated
 from planner_reactor.rs.terms import Value
 from planner_reactor.rs.vocabulary import BUILT_IN, Signature
 from planner_reactor.runtime import Body, Outcome, Strand
@@ -102,6 +103,7 @@ class Controls:
     def __init__(self, situations: Situations) -> None:
         self._situations = situations
         self._waits: dict[Strand, str] = {}
+        self.functions: Mapping[str, Callable[..., Value]] = {}  # of the host
         self.sit = Sit(situations)
 
     def __iter__(self) -> Iterator[BuiltIn | Sit]:
@@ -117,6 +119,7 @@ class Controls:
             yield BuiltIn(name, self._wait(name), self._left_wait, announces=True)
         yield BuiltIn("WAITOLD", self._wait_old, self._left_wait, announces=True)
         yield BuiltIn("RENEW", self._renew)
+        yield BuiltIn("MIGRATE", self._migrate)
         yield BuiltIn("INHIBIT", self._inhibit)
         yield BuiltIn("UNINHIBIT", self._uninhibit)
         yield BuiltIn("DISABLE", self._disable)
@@ -167,6 +170,11 @@ class Controls:
 
     def _left_wait(self, strand: Strand) -> None:
         self._situations.left_wait(self._waits.pop(strand), strand, strand.root)
+
+    def _migrate(self, strand: Strand, arguments: tuple[Value, ...]) -> Outcome:
+        situation, *how = arguments
+        self._situations.migrate(str(situation), lambda old: migrated(old, how, self.functions))
+        return STOPPED
 
     def _inhibit(self, strand: Strand, arguments: tuple[Value, ...]) -> Outcome:
         self._situations.inhibit(str(arguments[0]), strand.root)

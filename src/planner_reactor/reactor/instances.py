@@ -46,12 +46,15 @@ class Instance:
 
 @dataclass(slots=True, eq=False)
 class QueuedAssert:
+    """An ASSERT held back. One that was migrated is `kept` if its process is removed: then it has no strand."""
+
     ticket: int
     situation: Situation
     arguments: tuple[object, ...]
     owner: Instance | None
-    strand: Strand
+    strand: Strand | None
     again: bool
+    kept: bool = False
 
 
 @dataclass(slots=True, eq=False)

@@ -10,7 +10,7 @@ Legend: s situation, k instance number, g reaction = (label of its guard or None
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Iterator
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 from planner_reactor.reactor.instances import (
     Inhibition,
@@ -107,13 +107,15 @@ class Situations:
         return False
 
     def _begin(
-        self, situation: Situation, arguments: tuple[object, ...], owner: Instance | None, strand: Strand, again: bool
-    ) -> None:
+        self, situation: Situation, arguments: tuple[object, ...], owner: Instance | None, strand: Strand | None,
+        again: bool,
+    ) -> None:  # fmt: skip
         self._count += 1
         version = self.versions.newest(situation.name)
         instance = Instance(self._count, situation, arguments, owner, strand, again, version)
         situation.instances[instance.number] = self._instances[instance.number] = instance
-        self._awaited[strand] = instance
+        if strand is not None:
+            self._awaited[strand] = instance
         if owner is not None:
             owner.children[instance.number] = instance
         self._notice("asserted", situation=situation.name, instance=instance.number, arguments=arguments,
@@ -136,12 +138,24 @@ class Situations:
     def cancel(self, strand: Strand) -> None:
         """N9: an ASSERT is aborted. Its instance ends as failed; if it is still queued it leaves the queue."""
         if (entry := self._queued.pop(strand, None)) is not None:
+            if entry.kept:
+                entry.strand = None
+                return
             self._unlink(entry)
             self._notice("unqueued", situation=entry.situation.name, cause="cancelled")
         elif (instance := self._awaited.pop(strand, None)) is not None:
             instance.awaiter = None
             self._end([(instance, False, "cancelled")])
             self._complete(instance)
+
+    def migrate(self, name: str, change: Callable[[tuple[Any, ...]], tuple[object, ...] | None]) -> None:
+        """MIGRATE[s, …]: what is held back takes other arguments and stays if its process goes; what has none fails."""
+        for entry in list(self.named(name).queue.values()):
+            if (arguments := change(entry.arguments)) is None:
+                self._fail(entry, "error")
+            else:
+                entry.arguments, entry.kept = arguments, True
+                self._notice("migrated", situation=name, arguments=arguments)
 
     @staticmethod
     def _unlink(entry: QueuedAssert) -> None:
@@ -201,10 +215,14 @@ class Situations:
 
     def _fail_queued(self, owner: Instance) -> None:
         for entry in list(owner.queued.values()):
-            self._unlink(entry)
+            self._fail(entry, "withdrawn")
+
+    def _fail(self, entry: QueuedAssert, cause: str) -> None:
+        self._unlink(entry)
+        self._notice("unqueued", situation=entry.situation.name, cause=cause)
+        if entry.strand is not None:
             del self._queued[entry.strand]
-            self._notice("unqueued", situation=entry.situation.name, cause="withdrawn")
-            self._waker.ended(entry.strand, False, (), "withdrawn")
+            self._waker.ended(entry.strand, False, (), cause)
 
     def _complete(self, instance: Instance | None) -> None:
         """Ended, with its bodies and descendants: the await returns; then the same for its owner."""
@@ -360,6 +378,6 @@ class Situations:
         if not situation.held_back:
             for entry in list(situation.queue.values()):
                 self._unlink(entry)
-                del self._queued[entry.strand]
+                self._queued.pop(entry.strand, None)
                 self._begin(situation, entry.arguments, entry.owner, entry.strand, entry.again)
         self.serving.offer(situation)

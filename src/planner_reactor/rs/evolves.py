@@ -389,7 +389,7 @@ def abort(term: Run, store: Store, root: int) -> Store:
         case Await(k):
             return store.abandoned(k)
         case Queued(ticket):
-            return store.left_queue(ticket)
+            return store.abandoned_in_queue(ticket)
         case Waiting("DRAIN", s):
             return store.drain_ended(s, root).released(s)
         case _:

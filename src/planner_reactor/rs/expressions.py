@@ -66,7 +66,7 @@ def evaluate(
         case Operation(sign, left, right):
             return _operation(sign, evaluate(left, environment, functions), evaluate(right, environment, functions))
         case Apply(function, arguments):
-            return _apply(function, [evaluate(a, environment, functions) for a in arguments], functions)
+            return applied(function, [evaluate(a, environment, functions) for a in arguments], functions)
 
 
 def same(left: Value, right: Value) -> bool:
@@ -129,7 +129,8 @@ def _arithmetic(sign: str, left: Value, right: Value) -> int | float:
     return result
 
 
-def _apply(name: str, arguments: list[Value], functions: Mapping[str, Callable[..., Value]]) -> Value:
+def applied(name: str, arguments: list[Value], functions: Mapping[str, Callable[..., Value]]) -> Value:
+    """What a function of the host makes of these; `EvaluationError` if it fails or is not there."""
     function = functions.get(name)
     if function is None:
         hint = nearest(name, functions)

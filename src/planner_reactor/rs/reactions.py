@@ -63,11 +63,15 @@ class Surgery(msgspec.Struct, frozen=True, kw_only=True):
     adds: tuple[int, ...] = ()
     named: tuple[str, ...] = ()
     removed: tuple[str, ...] = ()  # of `named`: nothing serves them afterwards
+    migrated: tuple[tuple[str, tuple[int | str, ...]], ...] = ()  # what becomes of the arguments of what is queued
     number: int | None = None  # what COMMIT makes durable: the id of the adaptation
 
 
 def drain_script(surgery: Surgery) -> Process:
-    """Safe adaptation: `DRAIN[top] : … : COMMIT[id] : KILL[old] : … : POST[new] : … : UNINHIBIT[top]`."""
+    """Safe adaptation: `DRAIN[top] : … : COMMIT[id] : KILL[old] : … : POST[new] : … : UNINHIBIT[top]`.
+
+    `MIGRATE[s, …]` follows COMMIT where a situation takes other parameters.
+    """
     return _script([Call("DRAIN", (Symbol(s),)) for s in surgery.held], surgery, surgery.held)
 
 
@@ -109,8 +113,16 @@ def _commit(surgery: Surgery) -> list[Process]:
     return [] if surgery.number is None else [Call("COMMIT", (Number(surgery.number),))]
 
 
+def _migrate(surgery: Surgery) -> list[Process]:
+    """Before what asserted it is removed: from then on what is queued stays without it."""
+    return [
+        Call("MIGRATE", (Symbol(s), *(Number(way) if isinstance(way, int) else Symbol(way) for way in how)))
+        for s, how in surgery.migrated
+    ]
+
+
 def _script(hold: list[Process], surgery: Surgery, held: tuple[str, ...]) -> Process:
-    steps = [*hold, *_commit(surgery), *(Call("KILL", (Number(n),)) for n in surgery.kills)]
+    steps = [*hold, *_commit(surgery), *_migrate(surgery), *(Call("KILL", (Number(n),)) for n in surgery.kills)]
     steps += [Call("POST", (Number(n),)) for n in surgery.adds]
     steps += [Call("UNINHIBIT", (Symbol(s),)) for s in reversed(held)]
     return cond(*steps) if steps else STOP

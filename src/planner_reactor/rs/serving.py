@@ -11,6 +11,7 @@ from typing import TypeAlias
 
 from planner_reactor.rs.configurations import AB, OK, WAITS, World
 from planner_reactor.rs.expressions import is_number
+from planner_reactor.rs.migration import migrated
 from planner_reactor.rs.states import Await, Delivered, Ended, Leaf, Queued, Reaction, Run, Spot, Waiting, results_of
 from planner_reactor.rs.store import Store
 from planner_reactor.rs.terms import Value
@@ -95,6 +96,12 @@ def wait_old(leaf: Leaf, spot: Spot, store: Store, world: World) -> Result | Non
     return WAITS, (), Waiting("WAITOLD", situation, store.version(situation)), store
 
 
+def migrate(leaf: Leaf, spot: Spot, store: Store, world: World) -> Result | None:
+    """MIGRATE[s, a…]: what is held back takes these arguments, and stays if whoever asserted it is removed."""
+    situation, *how = leaf.arguments
+    return OK, (), Ended(True), store.migrated(str(situation), lambda old: migrated(old, how, world.functions))
+
+
 def inhibit(leaf: Leaf, spot: Spot, store: Store, world: World) -> Result | None:
     return OK, (), Ended(True), store.inhibit(str(leaf.arguments[0]), spot.root, "inhibit")
 
@@ -159,6 +166,7 @@ RULES: dict[str, Rule] = {
     "DRAIN": drain,
     "RENEW": renew,
     "WAITOLD": wait_old,
+    "MIGRATE": migrate,
     "INHIBIT": inhibit,
     "UNINHIBIT": uninhibit,
     "DISABLE": disable,

@@ -11,7 +11,7 @@ name)`).
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Callable, Collection
 from typing import Literal, TypeAlias
 
 import msgspec
@@ -50,13 +50,18 @@ class Inhibition(msgspec.Struct, frozen=True, cache_hash=True):
 
 
 class QueuedAssert(msgspec.Struct, frozen=True, cache_hash=True):
-    """An ASSERT held back; `fate` is set once it is released (its instance) or has failed (the cause)."""
+    """An ASSERT held back; `fate` is set once it is released (its instance) or has failed (the cause).
+
+    One that was migrated is `kept` if the process that asserted it is removed: it is not `awaited` then.
+    """
 
     ticket: InstanceNumber
     situation: str
     arguments: tuple[Value, ...]
     owner: InstanceNumber | None
     fate: InstanceNumber | str | None = None
+    kept: bool = False
+    awaited: bool = True
 
 
 Versions: TypeAlias = tuple[tuple[str, int], ...]
@@ -191,6 +196,25 @@ class Store(msgspec.Struct, frozen=True, cache_hash=True):
     def left_queue(self, ticket: int) -> Store:
         return replace(self, queue=tuple(q for q in self.queue if q.ticket != ticket))
 
+    def abandoned_in_queue(self, ticket: int) -> Store:
+        """N9: a queued ASSERT was aborted; it leaves the queue, unless it was migrated."""
+        if any(q.ticket == ticket and q.kept and q.fate is None for q in self.queue):
+            queue = tuple(replace(q, awaited=False) if q.ticket == ticket else q for q in self.queue)
+            return replace(self, queue=queue)
+        return self.left_queue(ticket)
+
+    def migrated(self, situation: str, change: Callable[[tuple[Value, ...]], tuple[Value, ...] | None]) -> Store:
+        """MIGRATE: what is held back takes other arguments; what has none fails."""
+        store = self
+        for entry in self.queue:
+            if entry.situation == situation and entry.fate is None:
+                if (arguments := change(entry.arguments)) is None:
+                    store = store._fated(entry, "error")
+                else:
+                    new = replace(entry, arguments=arguments, kept=True)
+                    store = replace(store, queue=tuple(new if q.ticket == new.ticket else q for q in store.queue))
+        return store
+
     def ended(self, number: int, *, ok: bool, cause: str = "failed") -> Store:
         """SUCCEED or FAIL (first wins; on an instance that is being withdrawn SUCCEED acts as FAIL)."""
         instance = self.get(number)
@@ -289,6 +313,7 @@ class Store(msgspec.Struct, frozen=True, cache_hash=True):
             if entry.situation == situation and entry.fate is None:
                 store, number = store.asserted(situation, entry.arguments, entry.owner)
                 store = store._fated(entry, number)
+                store = store if entry.awaited else store.changed(number, awaited=False)
         return store
 
     def root_ended(self, root: int) -> Store:
@@ -300,6 +325,8 @@ class Store(msgspec.Struct, frozen=True, cache_hash=True):
         return store
 
     def _fated(self, entry: QueuedAssert, fate: InstanceNumber | str) -> Store:
+        if not entry.awaited:
+            return self.left_queue(entry.ticket)
         queue = tuple(replace(q, fate=fate) if q.ticket == entry.ticket else q for q in self.queue)
         return replace(self, queue=queue)
 

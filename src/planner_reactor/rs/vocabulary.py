@@ -109,6 +109,7 @@ def _adaptation() -> Iterable[Signature]:
     yield Signature("DRAIN", _FIRST, outcomes=STOPS)
     yield Signature("RENEW", _FIRST, window=AT_ONCE, outcomes=STOPS)
     yield Signature("WAITOLD", _FIRST, outcomes=STOPS)
+    yield Signature("MIGRATE", _FIRST, open_inputs=True, window=AT_ONCE, outcomes=STOPS)
     yield Signature("KILL", ("label",))
     yield Signature("RETIRE", ("label",), window=AT_ONCE)
     yield Signature("E", ("label",), outcomes=STOPS)

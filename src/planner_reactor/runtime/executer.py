@@ -69,7 +69,8 @@ class Executer:
         by_name: dict[str, Control] = {control.name: control for control in controls}
         by_name |= {basic.name: basic for basic in self._basics}
         self._controls: Mapping[str, Control] = by_name
-        self._compiler = Compiler(self._kernel, by_name, host.functions if host else {})
+        self.functions = host.functions if host else {}
+        self._compiler = Compiler(self._kernel, by_name, self.functions)
         self._told = on_end
         self._witness: Witness | None = None
         self._killed: set[Root] = set()
