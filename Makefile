@@ -6,7 +6,7 @@ BIN    := $(VENV)/bin
 PIP    := $(BIN)/python -m pip --disable-pip-version-check install --quiet --constraint constraints.txt
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test check figures bench docs conformance laws mutants nets clean
+.PHONY: help demo test check figures bench docs conformance laws mutants fuzz nets clean
 
 help:  ## list the targets
 	@grep -hE '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## */  make \1\t/' | expand -t 22
@@ -39,6 +39,9 @@ laws: $(VENV)/dev.done  ## each law on 10,000 random terms, under every equivale
 
 mutants: $(VENV)/dev.done  ## every small change to the rules meets the tests; the table of docs/analysis.md
 	nice -n 10 $(BIN)/python -m tests.mutants
+
+fuzz: $(VENV)/dev.done  ## a million hostile texts, journals, frames and adaptations; resumes where it stopped
+	nice -n 10 $(BIN)/python -m tests.fuzz
 
 nets: $(VENV)/dev.done  ## a thousand random nets, each also searched by SPIN (half an hour; needs spin and gcc)
 	SPIN_NETS=1000 $(BIN)/python -m pytest -q -s tests/analysis/test_networks.py -k each_random_net

@@ -18,11 +18,12 @@ from typing import Any
 
 import bench_executer as ours
 import bench_network
+import bench_swap
 import planner_rows
 import transition_rows
 from measuring import Work, rates
 
-PEERS = ("simpy", "asyncio", "trio", "gtpyhop", "unified")
+PEERS = ("simpy", "asyncio", "trio", "gtpyhop", "unified", "pytrees")
 COUNTS = (10, 1_000, 100_000)
 Row = dict[str, Any]
 
@@ -31,7 +32,8 @@ def main() -> int:
     """Run everything and print it."""
     parser = argparse.ArgumentParser(prog="benchmarks", description=__doc__)
     parser.add_argument("--peers", action="store_true", help="also measure SimPy, asyncio and trio")
-    parser.add_argument("--only", choices=("executer", "planner", "transitions", "network"), help="measure one part")
+    only = ("executer", "planner", "transitions", "network", "swaps")
+    parser.add_argument("--only", choices=only, help="measure one part")
     parser.add_argument("--json", action="store_true", help="print one JSON object")
     given = parser.parse_args()
     peers = installed() if given.peers else {}
@@ -40,6 +42,7 @@ def main() -> int:
         "planner": (planner_rows.planning,),
         "transitions": (transition_rows.systems,),
         "network": (bench_network.rows,),
+        "swaps": (swapping,),
     }
     rows = [row for name, part in parts.items() if given.only in (None, name) for do in part for row in do(peers)]
     found = {
@@ -135,6 +138,19 @@ def latency_rows(
         limited(f"{name}, {percentile}", "µs", mine[i], goal, {peer: found[i] for peer, found in theirs.items()})
         for i, (percentile, goal) in enumerate((("p50", 6.0), ("p99", 30.0)))
     ]
+
+
+def swapping(peers: dict[str, ModuleType]) -> list[Row]:
+    """Replacing a segment of a running reactor; a peer replaces a subtree of a running tree of as many nodes."""
+    progress("swaps")
+    theirs = {peer: module.swaps() for peer, module in peers.items() if hasattr(module, "swaps")}
+    found = bench_swap.swaps(2_000)
+    lost = sum(value for name, value in found.items() if name in bench_swap.COUNTED)
+    return [
+        limited(f"swap of a segment, {found['processes']:,} processes, {percentile}", "µs", found["cpu_us"][i], goal,
+                {peer: latencies[i] for peer, latencies in theirs.items()})
+        for i, (percentile, goal) in enumerate((("p50", None), ("p99", 1000.0)))
+    ] + [limited("lost, restarted or left over in 2,000 swaps", "", lost, 0.0, {})]  # fmt: skip
 
 
 def costs(peers: dict[str, ModuleType]) -> list[Row]:

@@ -40,14 +40,14 @@ class SwapCell:
         self.segments = [Segment(n) for n in range(count)]
         self.reactor = Reactor(self.scheduler, host=self._host())
         self.reactor.start()
-        self._label = self._number = 0
+        self._label = self.number = 0
         self.inside = 0  # swaps that a reaction asked for
         self.perceived = 0
         self.lost = 0  # perceptions that are missing among the numbers
         self.outcomes: dict[str, int] = {}
         for segment in self.segments:
             self.reactor.receive(self.prepared(segment))
-        self.scheduler.run(self.scheduler.now)
+            self.scheduler.run(self.scheduler.now)
 
     def _host(self) -> Host:
         host = Host("swaps")
@@ -87,7 +87,7 @@ class SwapCell:
         """The adaptation that replaces the segment as it stands; `swapping`: the new one swaps others when it acts."""
         top, below, i = self._label + 1, self._label + 2, segment.index
         self._label += 2
-        self._number += 1
+        self.number += 1
         fresh = segment.version == 0
         act = f"Act[{i}, n]" + (f" : Swap[{i}]" if swapping else "")
         lines = [
@@ -100,7 +100,7 @@ class SwapCell:
             lines.append(f"P[{self._label}] = Event[{i}]<n> :; REASSERT[s{i}, n]")
             adds = (below, top, self._label)
         adaptation = Adaptation(
-            id=self._number,
+            id=self.number,
             definitions="\n".join(lines),
             changes=tuple(Change(situation=s, base=segment.version, fresh=fresh) for s in (f"s{i}", f"t{i}")),
             kills=() if fresh else segment.labels,
@@ -129,7 +129,7 @@ class SwapCell:
         stands = self.reactor.executer.statistics()
         each = len(self.segments)
         return {
-            "swaps that were not applied": self._number - self.outcomes.get("adaptation_applied", 0),
+            "swaps that were not applied": self.number - self.outcomes.get("adaptation_applied", 0),
             "bystanders restarted": sum(abs(s.begun - 1 - s.taken) for s in self.segments),
             "events lost": sum(len(s.unanswered) for s in self.segments),
             "perceptions lost": self.lost,

@@ -12,7 +12,7 @@ def test_every_version_stays_as_it_was() -> None:
     versions = [Persistent({n: str(n) for n in range(5)})]
     copies = [dict(versions[0])]
     for step in range(400):
-        which = random.randrange(len(versions)) if step % 5 == 0 else len(versions) - 1  # now and then from an older one
+        which = random.randrange(len(versions)) if step % 5 == 0 else len(versions) - 1
         gone = random.sample(range(12), 3)
         puts = dict.fromkeys(random.sample(range(12), 2), f"{step}")
         versions.append(versions[which].changed(puts, without=gone))

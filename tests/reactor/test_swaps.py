@@ -1,5 +1,4 @@
-"""Segments are swapped in a running reactor, also from inside reactions: nobody else notices, and it costs what it changes.
-"""
+"""Segments are swapped in a running reactor, also from inside reactions: unnoticed, at the cost of what it changes."""
 
 from __future__ import annotations
 
@@ -51,12 +50,12 @@ def calls_of_a_swap(segments: int) -> int:
 
         def call(frame: FrameType, event: str, argument: Any) -> None:
             nonlocal calls
-            calls += event in ("call", "c_call")
+            calls += event == "call" and "planner_reactor" in frame.f_code.co_filename
 
         sys.setprofile(call)
         cell.reactor.receive(adaptation)
         cell.scheduler.run(cell.scheduler.now)
         sys.setprofile(None)
         cell.take()
-        counted[calls // 100] += 1  # a few calls depend on the number of digits and the like
+        counted[calls] += 1
     return counted.most_common(1)[0][0]

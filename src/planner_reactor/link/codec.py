@@ -23,6 +23,9 @@ LARGEST_STANDING = 16_000_000
 _KINDS: dict[str, type[Message]] = {
     "adaptation": Adaptation, "enquiry": Enquiry, "perception": Perception, "standing": Standing,
 }  # fmt: skip
+MALFORMED = (msgspec.MsgspecError, RecursionError, UnicodeDecodeError)
+"""What decoding raises for bytes that are no message: also for a thousand arrays within each other, and for no text."""
+
 _encode = msgspec.msgpack.Encoder(enc_hook=str).encode
 
 
@@ -40,5 +43,5 @@ def decode(frame: bytes, *, largest: int = LARGEST) -> Message:
         if kind not in _KINDS:
             raise InputError(f"a message of unknown kind {kind!r}, expected one of {', '.join(sorted(_KINDS))}")
         return msgspec.msgpack.decode(body, type=_KINDS[kind])
-    except msgspec.MsgspecError as problem:
+    except MALFORMED as problem:
         raise InputError(f"a malformed message: {problem}") from None

@@ -110,7 +110,7 @@ class Session:
         """Take a frame; the messages that are complete with it, in order. `InputError` for another version."""
         try:
             frame = _decode(content)
-        except msgspec.MsgspecError:
+        except (msgspec.MsgspecError, RecursionError, UnicodeDecodeError):
             self.counts["malformed"] += 1
             return []
         if frame.version != VERSION:

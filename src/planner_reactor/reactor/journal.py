@@ -208,7 +208,7 @@ def _records(content: bytes, place: int) -> Iterator[tuple[Record, int]]:
             return
         try:
             record = _decode(body)
-        except msgspec.MsgspecError:
+        except (msgspec.MsgspecError, RecursionError, UnicodeDecodeError):
             return
         place += FRAME + len(body)
         number += 1

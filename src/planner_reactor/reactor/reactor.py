@@ -18,7 +18,7 @@ from planner_reactor.link.channels import PerceptionChannel
 from planner_reactor.link.messages import Adaptation, Enquiry, PerceptionKind
 from planner_reactor.link.messages import Standing as Told
 from planner_reactor.reactor.adaptation import Transaction, Transactions
-from planner_reactor.reactor.admission import Standing, examine
+from planner_reactor.reactor.admission import Standing, examine, is_text
 from planner_reactor.reactor.assumptions import Assumptions
 from planner_reactor.reactor.built_ins import BuiltIns
 from planner_reactor.reactor.composition import undone
@@ -145,10 +145,11 @@ class Reactor:
 
         A repeat of one that is under way says nothing new, of one that was applied it is acknowledged again.
         """
-        if repeated(self, adaptation):
+        sound = is_text(adaptation)
+        if sound and repeated(self, adaptation):
             return
         self.counts["received"] += 1
-        self.trace.record("adaptation_received", id=adaptation.id, purpose=adaptation.purpose)
+        self.trace.record("adaptation_received", id=adaptation.id, purpose=adaptation.purpose if sound else "")
         try:
             if self.halted:
                 raise RefusedError("halted", "the reactor is halted, expected a reset first")
@@ -160,7 +161,7 @@ class Reactor:
             self.transactions.begin(adaptation, reactions, killed, bound)
         except RefusedError as refusal:
             committed = self.journal.state.committed
-            if adaptation.epoch == committed.epoch and adaptation.id not in committed.taken:
+            if sound and adaptation.epoch == committed.epoch and adaptation.id not in committed.taken:
                 decided = Decided(adaptation.id, "refused", self.scheduler.now, adaptation.epoch)
                 self.journal.note(decided, sync=False)
             self._refused(adaptation, refusal.reason, str(refusal))

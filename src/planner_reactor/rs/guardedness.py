@@ -67,9 +67,15 @@ class Silence:
     def __init__(self, linked: Linked, known: Mapping[int, Silent]) -> None:
         self._linked = linked
         self._known = known
+        self._found: dict[int, Silent] = {}  # by identity: what is nested deeply is asked from every level above it
 
     def of(self, process: Process) -> Silent:
         """How this process may end without a step."""
+        if (found := self._found.get(id(process))) is None:
+            found = self._found[id(process)] = self._ends(process)
+        return found
+
+    def _ends(self, process: Process) -> Silent:
         match process:
             case Call("STOP"):
                 return Silent(stops=True)

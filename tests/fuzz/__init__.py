@@ -1,0 +1,1 @@
+"""Structured fuzz: hostile texts and bytes, made by grammars that know what they attack."""
