@@ -8,7 +8,7 @@ import msgspec
 
 Trigger: TypeAlias = Literal[
     "goal", "caller", "context", "normal", "forced", "reinstated", "stub_trigger", "situation_failure", "information",
-    "impossible", "adaptation_refused", "adaptation_timed_out", "domain", "withdrawn",
+    "impossible", "adaptation_refused", "adaptation_timed_out", "domain", "withdrawn", "standing",
 ]  # fmt: skip
 
 _SAID: dict[Trigger, str] = {
@@ -26,6 +26,7 @@ _SAID: dict[Trigger, str] = {
     "adaptation_timed_out": "adaptation {} took too long",
     "domain": "there is another text, {}",
     "withdrawn": "{} is no longer a goal",
+    "standing": "what stands is otherwise than planned, in {}",
 }
 
 

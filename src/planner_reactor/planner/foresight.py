@@ -14,6 +14,7 @@ from dataclasses import dataclass, field
 from planner_reactor.planner.beliefs import Beliefs
 from planner_reactor.planner.issuing import Issuer
 from planner_reactor.planner.model import Model
+from planner_reactor.planner.reactions import Names
 from planner_reactor.planner.reducing import Reducer
 from planner_reactor.planner.relaxing import Assuming
 
@@ -34,7 +35,8 @@ class Foresight:
             name = next((n for n in in_use if beliefs.without(n) not in self.foreseen), None)
             if name is None:
                 return None
-            self._shadow, self._about = self._without(beliefs.without(name)), name
+            self.foreseen.add(beliefs.without(name))
+            self._shadow, self._about = shadow_of(self.reducer, beliefs.without(name), Names()), name
         step = self._shadow.step()
         if step is None:
             self._shadow = None
@@ -43,15 +45,15 @@ class Foresight:
                 self._shadow.applied(adaptation.id)
         return self._about
 
-    def _without(self, beliefs: Beliefs) -> Reducer:
-        self.foreseen.add(beliefs)
-        actual = self.reducer
-        issuer = Issuer(Model(), actual.issuer.fold, actual.issuer.stub_ms, None, actual.issuer.mode)
-        issuer.sheets.share(actual.issuer.sheets)
-        assuming = Assuming(actual.theory.domain, "none")
-        assuming.beliefs = beliefs
-        shadow = Reducer(actual.theory, issuer.model, issuer, assuming, Counter())
-        shadow.memory = actual.memory
-        for root in actual.model.roots:
-            shadow.pursue(root.schema)
-        return shadow
+
+def shadow_of(actual: Reducer, beliefs: Beliefs, names: Names) -> Reducer:
+    """One that plans the same goals under other beliefs, for no reactor."""
+    issuer = Issuer(Model(names=names), actual.issuer.fold, actual.issuer.stub_ms, None, actual.issuer.mode)
+    issuer.sheets.share(actual.issuer.sheets)
+    assuming = Assuming(actual.theory.domain, "none")
+    assuming.beliefs = beliefs
+    shadow = Reducer(actual.theory, issuer.model, issuer, assuming, Counter())
+    shadow.memory = actual.memory
+    for root in actual.model.roots:
+        shadow.pursue(root.schema)
+    return shadow

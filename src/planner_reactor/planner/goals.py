@@ -22,6 +22,21 @@ def chosen_goal(domain: Domain, goal: str | None) -> str:
     return goal
 
 
+def must_follow(domain: Domain, before: Domain, goals: tuple[str, ...]) -> None:
+    """Can this text take the place of that one while reactions of that one are at work?"""
+    for goal in goals:
+        chosen_goal(domain, goal)
+    for name in before.assumptions:
+        if name not in domain.assumptions:
+            raise InputError(f"{domain.file}: no assumption {name}, and reactions in place may rest on it")
+    for name, schema in before.schemas.items():
+        other = domain.schemas.get(name)
+        if other is None or (other.inputs, other.outputs, len(other.executability)) != (
+            schema.inputs, schema.outputs, len(schema.executability),
+        ):  # fmt: skip
+            raise InputError(f"{domain.file}: action {name} takes, gives or needs something else than before")
+
+
 def root_schema(theory: Theory, goal_name: str) -> ActionSchema:
     """The goal as an abstract action without parameters: from the facts that may change to what is
     wanted (R (13)).

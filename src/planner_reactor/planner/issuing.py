@@ -39,6 +39,7 @@ class UnderWay(msgspec.Struct, frozen=True):
     before: tuple[tuple[Situation, Segment | None], ...]
     monitors: dict[Monitor, int]
     withdrawn: tuple[Situation, int | None] | None = None  # a goal, and the label of what asserted it
+    strangers: Mapping[int, str] = {}  # of the reactions that it removes
 
 
 class Difference(msgspec.Struct, frozen=True):
@@ -57,6 +58,8 @@ class _Parts:
     changes: list[Change] = field(default_factory=list)
     removed: list[str] = field(default_factory=list)
     adds: list[int] = field(default_factory=list)  # top-down
+    given_up: tuple[str, ...] = ()
+    strangers: dict[int, str] = field(default_factory=dict)
 
 
 @dataclass(slots=True)
@@ -77,8 +80,9 @@ class Issuer:
     introduced: list[Segment] = field(default_factory=list)  # by the last issue, and still stubs
     refused_alone: int = 0  # adaptations of no situation that were not applied, in a row
     sheets: Sheets = field(init=False)
+    strays: list[int] = field(default_factory=list)  # monitors that were to be removed, and are still there
+    strangers: dict[int, str] = field(default_factory=dict)  # reactions that nobody here issued, with what they serve
     _watched: object = None  # for which assumptions the monitors are as they should be
-    _strays: list[int] = field(default_factory=list)  # monitors that were to be removed, and are still there
 
     def __post_init__(self) -> None:
         self.sheets = Sheets(self.model.names, self.fold)
@@ -120,7 +124,7 @@ class Issuer:
         told = segment.required
         used = frozenset(model.uses)
         parts = _Parts()
-        if first and segment.situation in model.roots:
+        if model.roots.get(segment.situation, 0) is None:
             model.roots[segment.situation] = self._add(parts, show(reactions.root(segment.situation, model.names)))
         model.put(segment, refinement)
         if not same:
@@ -163,6 +167,21 @@ class Issuer:
             self.under_way[adaptation.id], withdrawn=(root, label)
         )
         return adaptation
+
+    def remove_strangers(self, beliefs: Beliefs, holding: Mapping[str, int]) -> Adaptation | None:
+        """An adaptation without the reactions that nobody here issued; None if there are none, or they stay."""
+        if not self.strangers or self.under_way or self.refused_alone >= MOST_REFUSALS:
+            return None
+        parts, monitors, used = _Parts(), dict(self.monitors), frozenset(self.model.uses)
+        parts.strangers, self.strangers = self.strangers, {}
+        parts.kills += parts.strangers
+        parts.removed += [situation for situation in parts.strangers.values() if situation]
+        self._watch(parts, beliefs, holding)
+        return self._send(parts, None, frozenset(), (), monitors, used, "remove what nobody planned")
+
+    def anew(self) -> Issuer:
+        """One that has issued nothing, with the same options."""
+        return Issuer(Model(), self.fold, self.stub_ms, self.period_ms, self.mode, self.epoch)
 
     def reconcile(
         self, beliefs: Beliefs, holding: Mapping[str, int], asked: Mapping[Atom, Action]
@@ -218,16 +237,36 @@ class Issuer:
             self.introduced.append(segment)
         else:
             text = self.sheets.reaction(refinement)
+        segment.label = next((n for n, name in self.strangers.items() if name == segment.name), None)
+        fresh = segment.label is None
+        if segment.label is not None:
+            parts.strangers[segment.label] = self.strangers.pop(segment.label)
         self._replace(parts, segment, text)
         assumptions = tuple(sorted(segment.required))
-        parts.changes.append(Change(situation=segment.name, base=segment.version, assumptions=assumptions, fresh=True))
+        parts.changes.append(Change(situation=segment.name, base=segment.version, assumptions=assumptions, fresh=fresh))
 
     def _watch(self, parts: _Parts, beliefs: Beliefs, holding: Mapping[str, int]) -> None:
         """Bring the monitors into line with the assumptions in use."""
+        parts.given_up = tuple(sorted(beliefs.relaxed))
         watched = (frozenset(self.model.uses), tuple(holding.items()))
-        if watched == self._watched and not self._strays:
+        if watched == self._watched and not self.strays:
             return
         self._watched = watched
+        wanted = self.wanted_monitors(beliefs, holding)
+        coming = {label for flight in self.under_way.values() for label in flight.adaptation.adds}
+        for monitor in [m for m in self.monitors if m not in wanted]:
+            if self.monitors[monitor] in coming:
+                self._watched = None  # it cannot go before it has come
+            else:
+                parts.kills.append(self.monitors.pop(monitor))
+        parts.kills.extend(self.strays)
+        self.strays.clear()
+        for (kind, name), period in wanted.items():
+            if (kind, name) not in self.monitors:
+                self.monitors[kind, name] = self._add(parts, show(reactions.monitor(kind, name, period)))
+
+    def wanted_monitors(self, beliefs: Beliefs, holding: Mapping[str, int]) -> dict[Monitor, int]:
+        """The monitors of what is in use, and of what may return, with their periods in ms."""
         wanted: dict[Monitor, int] = {}
         for name in sorted(self.model.used(), key=lambda n: (beliefs.assumption(n).likelihood, n)):
             declared = beliefs.assumption(name)
@@ -235,17 +274,7 @@ class Issuer:
                 wanted["ASSUMONITOR", name] = self.period_ms or declared.period_ms
         for name, patience in sorted(holding.items()):
             wanted["HOLDMONITOR", name] = patience * (self.period_ms or beliefs.assumption(name).period_ms)
-        coming = {label for flight in self.under_way.values() for label in flight.adaptation.adds}
-        for monitor in [m for m in self.monitors if m not in wanted]:
-            if self.monitors[monitor] in coming:
-                self._watched = None  # it cannot go before it has come
-            else:
-                parts.kills.append(self.monitors.pop(monitor))
-        parts.kills.extend(self._strays)
-        self._strays.clear()
-        for (kind, name), period in wanted.items():
-            if (kind, name) not in self.monitors:
-                self.monitors[kind, name] = self._add(parts, show(reactions.monitor(kind, name, period)))
+        return wanted
 
     def _send(
         self,
@@ -272,10 +301,13 @@ class Issuer:
             purpose=draft.purpose if draft else purpose,
             drops=tuple(sorted(used - after)) if used != after else (),
             adopts=tuple(sorted(after - used)) if used != after else (),
+            given_up=parts.given_up,
         )
         self.next_id += 1
         situation = draft.segment.situation if draft else None
-        self.under_way[adaptation.id] = UnderWay(adaptation, situation, touched, before, monitors)
+        self.under_way[adaptation.id] = UnderWay(
+            adaptation, situation, touched, before, monitors, strangers=parts.strangers
+        )
         for situation in touched:
             if situation in self.model.segments:
                 self.model.segments[situation].pending = adaptation.id
@@ -315,7 +347,8 @@ class Issuer:
             if label in mine:
                 del self.monitors[monitor]
         old = {label: monitor for monitor, label in flight.monitors.items()}
-        segments = {segment.label for _, segment in flight.before if segment is not None}
+        self.strangers |= flight.strangers
+        segments = {segment.label for _, segment in flight.before if segment is not None} | {*flight.strangers}
         if flight.withdrawn is not None:
             root, asserting = flight.withdrawn
             self.model.roots[root] = asserting
@@ -324,7 +357,7 @@ class Issuer:
             if label in old and old[label] not in self.monitors:
                 self.monitors[old[label]] = label
             elif label not in segments:
-                self._strays.append(label)
+                self.strays.append(label)
         for atom, label in list(self.requests.items()):
             if label in mine:
                 del self.requests[atom]

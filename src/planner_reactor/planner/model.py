@@ -8,7 +8,7 @@ found, with the reason.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 
 import msgspec
@@ -91,6 +91,7 @@ class Model:
     names: Names = field(default_factory=Names)
     segments: dict[Situation, Segment] = field(default_factory=dict)
     uses: dict[str, int] = field(default_factory=dict)  # assumption → segments that rest on it or bring it in
+    former: Mapping[str, int] = field(default_factory=dict)  # versions of what stood before this model, by name
     _calls: dict[Situation, dict[Situation, tuple[Child, ...]]] = field(default_factory=dict)
     _versions: dict[Situation, int] = field(default_factory=dict)
 
@@ -104,8 +105,9 @@ class Model:
 
     def new(self, situation: Situation, context: Context, path: tuple[int, ...] = ()) -> Segment:
         """A segment that is not in the model yet; its version goes on from where a removed one ended."""
-        version = self._versions.get(situation, 0)
-        return Segment(situation, self.names[situation], path, context, version=version)
+        name = self.names[situation]
+        version = self._versions.get(situation, self.former.get(name, 0))
+        return Segment(situation, name, path, context, version=version)
 
     def put(self, segment: Segment, refinement: Refinement | None) -> None:
         """Record a segment with this refinement, replacing what was recorded before."""
@@ -127,7 +129,8 @@ class Model:
 
     def is_removed(self, situation: Situation) -> None:
         """The reactor has removed it, which counts as a version."""
-        self._versions[situation] = self._versions.get(situation, 0) + 1
+        before = self._versions.get(situation, self.former.get(self.names[situation], 0))
+        self._versions[situation] = before + 1
 
     def _forget(self, segment: Segment) -> None:
         if segment.situation in self.segments:

@@ -19,7 +19,7 @@ from msgspec.structs import replace
 
 from planner_reactor.analysis.adaptations import Environment
 from planner_reactor.errors import InputError, nearest
-from planner_reactor.link.messages import Mode, Perception
+from planner_reactor.link.messages import Mode, Perception, Standing
 from planner_reactor.logic.diagnosis import Diagnosis
 from planner_reactor.logic.domain import Domain
 from planner_reactor.logic.formulas import Atom
@@ -29,15 +29,17 @@ from planner_reactor.planner.convergence import lacking, unlikelihood
 from planner_reactor.planner.diagnosing import CONVINCING, Diagnosing
 from planner_reactor.planner.explaining import Explanation, explain
 from planner_reactor.planner.foresight import Foresight
-from planner_reactor.planner.goals import chosen_goal
+from planner_reactor.planner.goals import chosen_goal, must_follow
 from planner_reactor.planner.issuing import Issuer
 from planner_reactor.planner.model import Model
 from planner_reactor.planner.reducing import Reducer
 from planner_reactor.planner.relaxing import Assuming
+from planner_reactor.planner.resuming import Resumption, begun_anew
 from planner_reactor.planner.sensing import observer_of
+from planner_reactor.planner.standings import ANSWERS, Standings
 from planner_reactor.planner.steps import Cause, Relax, Relaxation, Step
 from planner_reactor.planner.theory import Theory
-from planner_reactor.planner.verifying import Gate, reason
+from planner_reactor.planner.verifying import Gate, Verdicts, reason
 
 __all__ = ["Planner", "Relaxation", "Step"]
 
@@ -81,6 +83,7 @@ class Planner:
         self._reducer = Reducer(Theory(domain), self.model, self._issuer, self._assuming, self._counts)
         self._reducer.pursue(self.goal)
         self._foresight = Foresight(self._reducer) if foresight else None
+        self._standing = Standings()
 
     # ------------------------------------------------------------------------------------- what it tells
 
@@ -183,7 +186,7 @@ class Planner:
         What it makes different is adapted, piece by piece; all else goes on. The actions that there are must need
         what they needed before (InputError): reactions in place rest on that.
         """
-        _must_follow(domain, self.domain, self.goals)
+        must_follow(domain, self.domain, self.goals)
         self.domain = domain
         self._assuming.adopt(domain)
         if self._foresight is not None:
@@ -206,14 +209,24 @@ class Planner:
 
         None if there is nothing to do until something is perceived.
         """
+        if self._standing.busy:
+            return self._standing.step()
+        if self._gate is not None and self._gate.held is not None:
+            return self._verified(self._gate.look_on(), self._gate)
         step = self._reducer.step() or self._watch() or self._reinstate() or self._relax_next() or self._think_ahead()
-        return step if step is None or self._gate is None else self._verified(step, self._gate)
+        if step is None or self._gate is None or not step.adaptations:
+            return step
+        return self._verified(self._gate.look(step), self._gate)
 
-    def _verified(self, step: Step, gate: Gate) -> Step:
-        """The same without what does not hold: that counts as refused."""
-        sent, why = [], ""
-        for adaptation in step.adaptations:
-            verdict = gate.examine(adaptation)
+    def _verified(self, looked: tuple[Step, Verdicts] | None, gate: Gate) -> Step:
+        """The step that was looked at without what does not hold: that counts as refused. While it is not decided, the
+        looking is all that is done.
+        """
+        if looked is None:
+            assert gate.held is not None
+            return Step("verify", gate.held.situation, purpose=f"verify: {gate.held.purpose}")
+        (step, verdicts), sent, why = looked, [], ""
+        for adaptation, verdict in verdicts:
             if verdict.holds:
                 sent.append(adaptation)
                 continue
@@ -222,6 +235,35 @@ class Planner:
             self._counts["issued"] -= 1
             self._reducer.not_applied(adaptation.id, why=f"withheld, {why}")
         return replace(step, adaptations=tuple(sent), withheld=why) if why else step
+
+    @property
+    def fenced(self) -> bool:
+        """Has a later planner taken over? Then this one does nothing any more."""
+        return self._standing.fenced
+
+    @property
+    def taken_over(self) -> int | None:
+        """How many situations were taken over as they stood, if there is a planner before this one."""
+        return self._standing.taken_over
+
+    def enquire(self, enquirer: int) -> None:
+        """Ask the reactor how it stands, and plan nothing before it answers; `enquirer` tells planners apart."""
+        self._standing.enquire(enquirer)
+
+    def resume(self, standing: Standing) -> None:
+        """Go on with a reactor that stands: take over what is as it should be, adapt the rest (`resuming`)."""
+        if not self._standing.answers(standing):
+            return
+        self._reducer = begun_anew(self._reducer)
+        self._issuer, self.model = self._reducer.issuer, self._reducer.model
+        self._withheld.clear()
+        if self._foresight is not None:
+            self._foresight = Foresight(self._reducer)
+        if self._gate is not None:
+            self._gate.stand(standing.clauses.values())
+        self._standing.resume(Resumption(self._reducer, standing))
+        for name in standing.failed:
+            self._assumption_failed(name, 0)
 
     def _think_ahead(self) -> Step | None:
         """Nothing is to be done: work out what would be, were the next assumption to fail."""
@@ -238,7 +280,10 @@ class Planner:
                 action = observer_of(self.domain, atom)
                 if action is not None and self._assuming.beliefs.known(atom) is None:
                     asked[atom] = action
-        adaptation = self._issuer.reconcile(self._assuming.beliefs, self._assuming.watched, asked)
+        beliefs, watched = self._assuming.beliefs, self._assuming.watched
+        done = self._reducer.is_done and not self.impossible  # then nothing asserts what nobody planned
+        adaptation = self._issuer.remove_strangers(beliefs, watched) if done else None
+        adaptation = adaptation or self._issuer.reconcile(beliefs, watched, asked)
         if adaptation is None:
             return None
         self._counts["issued"] += 1
@@ -284,6 +329,9 @@ class Planner:
     def perceive(self, perception: Perception) -> None:
         """Take note of one perception; the next steps follow from it."""
         self._counts[perception.kind] += 1
+        if perception.kind in ANSWERS and perception.epoch != self._issuer.epoch:
+            return  # it was another planner's
+        self._standing.perceive(perception, self._issuer)
         if self._gate is not None:
             self._gate.perceive(perception)
         match perception.kind:
@@ -312,7 +360,7 @@ class Planner:
                 self._diagnosing.sensed(perception.subject, unknown=True)
             case "information":
                 self._told(perception)
-            case "guard_kill" | "error":
+            case "guard_kill" | "error" | "restarted" | "halted":
                 pass  # completion is told by adaptation_applied; errors are counted
 
     def _situation_failed(self, name: str, number: int) -> None:
@@ -349,18 +397,3 @@ class Planner:
             self._assuming.beliefs = self._assuming.beliefs.learning(atom, holds=verdict == "holds")
             self._issuer.requests.pop(atom, None)
             self._reducer.reconsider(Because("information", str(atom), perception.number), atom)
-
-
-def _must_follow(domain: Domain, before: Domain, goals: tuple[str, ...]) -> None:
-    """Can this text take the place of that one while reactions of that one are at work?"""
-    for goal in goals:
-        chosen_goal(domain, goal)
-    for name in before.assumptions:
-        if name not in domain.assumptions:
-            raise InputError(f"{domain.file}: no assumption {name}, and reactions in place may rest on it")
-    for name, schema in before.schemas.items():
-        other = domain.schemas.get(name)
-        if other is None or (other.inputs, other.outputs, len(other.executability)) != (
-            schema.inputs, schema.outputs, len(schema.executability),
-        ):  # fmt: skip
-            raise InputError(f"{domain.file}: action {name} takes, gives or needs something else than before")

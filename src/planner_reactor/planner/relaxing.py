@@ -75,6 +75,20 @@ class Assuming:
         self.beliefs = self.beliefs.without(name)
         self.records.append(Relaxation(name, cause))
 
+    def take_over(self, given_up: Iterable[str], failed: Iterable[str], watched: Mapping[str, int]) -> None:
+        """What another planner gave up stays given up, by force if it failed or its return is `watched` for (how long,
+        in ms); if it has returned meanwhile it may come back.
+        """
+        for name in given_up if self.relax != "none" else ():
+            if name.partition("(")[0] in self.domain.assumptions and name not in self.beliefs.relaxed:
+                forced = name in failed or name in watched
+                self._causes[name] = "forced" if forced else "normal"
+                self.beliefs = self.beliefs.without(name)
+                if name in watched:
+                    self._returns[name] = (watched[name] // self.beliefs.assumption(name).period_ms).bit_length() - 1
+                    if name not in failed:
+                        self.holds_again(name)
+
     def holds_again(self, name: str) -> None:
         """It may come back as soon as there is time."""
         if name in self.watched:

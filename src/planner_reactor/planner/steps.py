@@ -6,16 +6,19 @@ from typing import Literal, TypeAlias
 
 import msgspec
 
-from planner_reactor.link.messages import Adaptation
+from planner_reactor.link.messages import Adaptation, Enquiry
 
 Relax: TypeAlias = "Literal['all', 'none'] | tuple[str, ...]"
 Cause: TypeAlias = Literal["normal", "forced"]
-StepKind: TypeAlias = Literal["refine", "relax", "reinstate", "watch", "foresee"]
+StepKind: TypeAlias = Literal[
+    "refine", "relax", "reinstate", "watch", "foresee", "enquire", "resume", "repeat", "verify"
+]  # fmt: skip
 
 
 class Step(msgspec.Struct, frozen=True):
     """What one step did: worked on a `situation`, for the sake of an `assumption` (or ''), and what it
-    issued. `withheld` says why something was not issued.
+    issued, or issued once more (`repeat`). `withheld` says why something was not issued; an `enquiry` asks the reactor
+    how it stands. `verify`: what another step came to is held, and is looked at.
     """
 
     kind: StepKind
@@ -25,6 +28,7 @@ class Step(msgspec.Struct, frozen=True):
     adaptations: tuple[Adaptation, ...] = ()
     purpose: str = ""
     withheld: str = ""
+    enquiry: Enquiry | None = None
 
 
 class Relaxation(msgspec.Struct, frozen=True):

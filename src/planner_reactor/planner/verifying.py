@@ -3,26 +3,36 @@
 A `Gate` stands between what the planner writes and what it sends. It keeps the reactions that the reactor will have, as
 far as the planner knows, and asks `analysis.adaptations` about each change of them. What does not hold is not sent: the
 planner takes it as refused, with the reason. What adds only situations that never were needs no look, so the first
-adaptation goes out at once; texts are read when a later one needs them.
+adaptation goes out at once; texts are read when a later one needs them. What is of a shape that came before is known
+at once; another is looked at a few states at a time, and held meanwhile.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import TypeAlias
 
 from msgspec.structs import replace
 
 from planner_reactor.analysis.adaptations import Environment, Verdict, Verifier
 from planner_reactor.analysis.forms import Forms, Known
 from planner_reactor.analysis.labels import show_label
-from planner_reactor.analysis.protocols import Looking, finish
+from planner_reactor.analysis.looking import Looking, finish
 from planner_reactor.analysis.standing import Standing
 from planner_reactor.errors import RSError
 from planner_reactor.link.messages import Adaptation, Perception
 from planner_reactor.link.surgeries import surgery
+from planner_reactor.planner.steps import Step
+from planner_reactor.planner.thinking import advance
 
 NOTHING_WAS = Verdict(bound_s=0.0)
 """Of what adds to nothing: nobody can be in its way, and it waits for nobody."""
+
+
+STATES = 4
+"""So many states are looked at in one step of the planner: about two milliseconds."""
+
+Verdicts: TypeAlias = list[tuple[Adaptation, Verdict]]
 
 
 class Gate:
@@ -37,6 +47,7 @@ class Gate:
         self._forms = Forms()
         self._standing = Standing()
         self._under_way: dict[int, tuple[Adaptation, tuple[Known, ...]]] = {}  # with what it removes
+        self._held: tuple[Step, Looking[Verdicts]] | None = None
 
     def meet(self, environment: Environment) -> None:
         """What is known of the basic processes from now on: bounds are numbers, and what has none is withheld."""
@@ -60,7 +71,10 @@ class Gate:
             new = self._reactions(adaptation)
         except RSError as problem:
             return self._withhold(adaptation, Verdict(safe=False, why=str(problem)))
-        verdict = yield from self.verifier.looking(self._standing, new, surgery(adaptation))
+        seen = None
+        while seen != (now := (self._standing, self._standing.changes)):  # what stands may change meanwhile
+            seen = now
+            verdict = yield from self.verifier.looking(self._standing, new, surgery(adaptation))
         if self._patient:
             verdict = replace(verdict, bounded=True)
         if not verdict.holds:
@@ -80,6 +94,36 @@ class Gate:
             self._known |= set() if reaction.situation is None else {reaction.situation}
         self._unread.clear()
         self._under_way.clear()
+        self._held = None
+        self._held = None
+
+    # ------------------------------------------------------------------------------------- held until the verdict
+
+    def look(self, step: Step) -> tuple[Step, Verdicts] | None:
+        """Look at what a step issues; the step with the verdicts, or None if that takes more than one step: it is held."""
+        self._held = step, self._all_of(step.adaptations)
+        return self.look_on()
+
+    @property
+    def held(self) -> Step | None:
+        """The step that is held until its verdicts are known."""
+        return None if self._held is None else self._held[0]
+
+    def look_on(self) -> tuple[Step, Verdicts] | None:
+        """Go on with what is held, for at most so many states."""
+        assert self._held is not None
+        step, work = self._held
+        verdicts, _ = advance(work, STATES)
+        if verdicts is None:
+            return None
+        self._held = None
+        return step, verdicts
+
+    def _all_of(self, adaptations: tuple[Adaptation, ...]) -> Looking[Verdicts]:
+        found = []
+        for adaptation in adaptations:
+            found.append((adaptation, (yield from self.examining(adaptation))))
+        return found
 
     def perceive(self, perception: Perception) -> None:
         """What became of those that were sent."""
@@ -121,4 +165,3 @@ def reason(adaptation: Adaptation, verdict: Verdict) -> str:
     broken = [law for law in ("safe", "consistent", "atomic", "local", "bounded") if not getattr(verdict, law)]
     steps = "; ".join(show_label(label) for label in verdict.counterexample)
     return f"{situations or 'monitors'}: not {', '.join(broken)}: {verdict.why}" + (f" ({steps})" if steps else "")
-

@@ -1,0 +1,91 @@
+"""When a planner asks how the reactor stands, and when it repeats what was not answered.
+
+It asks when it begins on a reactor that stands, and when the reactor begins anew and is not what it was: its journal
+has lost something, or other versions stand. If the reactor that begins anew is what it was, what is open is issued
+once more, unchanged and under the same ids: what was applied is acknowledged again, what was lost is begun again.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from planner_reactor.link.messages import Enquiry, Perception, Standing
+from planner_reactor.planner.issuing import Issuer
+from planner_reactor.planner.resuming import Resumption
+from planner_reactor.planner.steps import Step
+
+ANSWERS = frozenset({"adaptation_applied", "adaptation_refused", "adaptation_timed_out"})
+
+
+@dataclass(slots=True)
+class Standings:
+    """What one planner has to do with a standing reactor before it can plan."""
+
+    fenced: bool = False
+    taken_over: int | None = None
+    _enquirer: int = 0
+    _asks: bool = False  # there is something to ask
+    _waits: bool = False  # for an answer
+    _resumption: Resumption | None = None
+    _repeats: Issuer | None = None
+
+    @property
+    def busy(self) -> bool:
+        """Is there nothing to be planned for now?"""
+        return self.fenced or self._waits or self._resumption is not None or self._repeats is not None
+
+    def step(self) -> Step | None:
+        """The next piece of work, if there is one."""
+        if self.fenced:
+            return None
+        if self._asks:
+            self._asks = False
+            return Step("enquire", enquiry=Enquiry(enquirer=self._enquirer), purpose="ask how the reactor stands")
+        if self._waits:
+            return None
+        if self._resumption is not None:
+            if not self._resumption.step():
+                self.taken_over, self._resumption = self._resumption.same, None
+            return Step("resume", purpose="take over what stands")
+        issuer, self._repeats = self._repeats, None
+        again = tuple(flight.adaptation for flight in issuer.under_way.values()) if issuer else ()
+        return Step("repeat", adaptations=again, purpose="repeat what was not answered")
+
+    def enquire(self, enquirer: int | None = None) -> None:
+        """Ask, or ask once more."""
+        self._enquirer = self._enquirer if enquirer is None else enquirer
+        self._asks = self._waits = True
+        self._repeats = None
+
+    def answers(self, standing: Standing) -> bool:
+        """Is this what was asked for? A planner whose time is over goes on only if it asks itself."""
+        mine = self._waits and standing.enquirer == self._enquirer
+        if mine:
+            self.fenced = self._asks = self._waits = False
+        return mine
+
+    def resume(self, resumption: Resumption) -> None:
+        self._resumption = resumption
+
+    def perceive(self, perception: Perception, issuer: Issuer) -> None:
+        """What bears on it: a later planner has taken over, or the reactor began anew."""
+        if perception.kind == "adaptation_refused" and perception.cause == "epoch":
+            self.fenced = True
+        elif perception.kind == "restarted":
+            versions: dict[str, int] = dict(perception.values)  # type: ignore[arg-type]  # pairs
+            asking = self._waits or self._resumption is not None or perception.subject == "damaged"
+            if asking or not _as_it_was(versions, issuer):
+                self.enquire()
+            elif issuer.under_way:
+                self._repeats = issuer
+
+
+def _as_it_was(versions: Mapping[str, int], issuer: Issuer) -> bool:
+    """Has the reactor the versions that it should have, given that nobody knows what became of what is under way?"""
+    open_ = {s for flight in issuer.under_way.values() for s in flight.touched}
+    for segment in issuer.model:
+        may_be = {segment.version, segment.version + (segment.situation in open_)}
+        if versions.get(segment.name, 0) not in may_be:
+            return False
+    return True
