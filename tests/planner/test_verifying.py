@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import groupby
+
 import pytest
 from msgspec.structs import replace
 
@@ -104,8 +106,32 @@ def steps(planner: Planner, most: int = 400) -> list[Step]:
 
 def test_verification_changes_nothing_of_what_holds() -> None:
     verified, trusted = (steps(Planner(kitting(), verify=verify)) for verify in (True, False))
-    assert verified == trusted
+    assert [step for step in verified if step.kind != "verify"] == trusted
     assert not any(step.withheld for step in verified)
+
+
+def test_a_new_shape_is_looked_at_in_several_steps_and_a_known_one_at_once() -> None:
+    done = steps(Planner(kitting()))
+    assert done[0].kind == "refine"
+    longest = max(len(list(group)) for kind, group in groupby(done, key=lambda s: s.kind) if kind == "verify")
+    assert 5 <= longest <= 15  # some 40 states, a few at a time
+    assert all(step.adaptations == () for step in done if step.kind == "verify")
+    assert sum(step.kind == "verify" for step in done[len(done) // 2 :]) < sum(step.kind == "verify" for step in done)
+
+
+def test_what_is_held_goes_on_when_something_is_perceived_and_is_looked_at_anew_if_the_reactor_changes() -> None:
+    made = gate(FIRST)
+    stub = "P[9] = SIT[work]<k> :; (Do ; FAIL[work, k])"
+    beside = replace(SECOND, id=9, kills=(1,), adds=(9,), changes=(Change(situation="work", base=1),), definitions=stub)
+    assert made.examine(beside).holds
+    assert made.look(Step("refine", adaptations=(SECOND,))) is None
+    made.perceive(perception("adaptation_refused", 9))
+    looked = None
+    while looked is None:
+        assert made.held is not None
+        looked = made.look_on()
+    ((adaptation, verdict),) = looked[1]
+    assert (adaptation, verdict.holds, made.held) == (SECOND, True, None)
 
 
 def test_a_planner_that_forgets_to_drain_is_stopped(monkeypatch: pytest.MonkeyPatch) -> None:

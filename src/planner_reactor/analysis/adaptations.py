@@ -15,7 +15,8 @@ from math import inf, isinf
 import msgspec
 
 from planner_reactor.analysis.forms import Known
-from planner_reactor.analysis.protocols import LIMIT, Checked, Counterexample, Looking, Protocol, checking, finish
+from planner_reactor.analysis.looking import Looking, finish
+from planner_reactor.analysis.protocols import LIMIT, Checked, Counterexample, Protocol, checking
 from planner_reactor.analysis.slicing import Slice, Sliced, apart, sliced, unknown_names
 from planner_reactor.analysis.standing import Standing, shape
 from planner_reactor.errors import BudgetError, InputError

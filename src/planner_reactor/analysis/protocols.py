@@ -16,13 +16,15 @@ that starves is seen. Basic processes end at any age within their windows.
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Generator, Hashable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Hashable, Iterable, Iterator, Mapping
 from math import inf
-from typing import Literal, TypeAlias, TypeVar
+from typing import Literal, TypeAlias
 
 import msgspec
 
+from planner_reactor.analysis.components import components
 from planner_reactor.analysis.explore import canonical
+from planner_reactor.analysis.looking import Looking, finish
 from planner_reactor.errors import BudgetError
 from planner_reactor.rs.configurations import Config, Label, World
 from planner_reactor.rs.evolves import started
@@ -93,21 +95,6 @@ class Checked(msgspec.Struct, frozen=True):
     def first(self) -> Counterexample | None:
         """The counterexample with the fewest steps."""
         return min(self.broken.values(), key=lambda c: len(c.path), default=None)
-
-
-T = TypeVar("T")
-Looking: TypeAlias = Generator[None, None, T]
-"""Work that pauses after every state that it has looked at."""
-
-
-def finish(looking: Looking[T]) -> T:
-    """All of it at once."""
-    while True:
-        try:
-            next(looking)
-        except StopIteration as done:
-            found: T = done.value
-            return found
 
 
 _Way: TypeAlias = tuple[int, frozenset[Hashable]]
@@ -332,39 +319,6 @@ def _back(before: Mapping[_Way, tuple[_Way, Label]], here: _Way, start: _Way) ->
         here, label = before[here]
         labels.append(label)
     return tuple(reversed(labels))
-
-
-def components(moves: Sequence[Sequence[Move]], within: set[int]) -> list[frozenset[int]]:
-    """The strongly connected components of a part of a graph (Tarjan), without recursion."""
-    found: list[frozenset[int]] = []
-    index: dict[int, int] = {}
-    low: dict[int, int] = {}
-    stack: list[int] = []
-    open_: set[int] = set()
-    for root in sorted(within):
-        work = [(root, iter(moves[root]))] if root not in index else []
-        while work:
-            node, rest = work[-1]
-            if node not in index:
-                index[node] = low[node] = len(index)
-                stack.append(node)
-                open_.add(node)
-            onward = (m.after for m in rest if m.after in within)
-            below = next((after for after in onward if after not in index or after in open_), None)
-            if below is None:
-                work.pop()
-                if work:
-                    low[work[-1][0]] = min(low[work[-1][0]], low[node])
-                if low[node] == index[node]:
-                    at = stack.index(node)
-                    found.append(frozenset(stack[at:]))
-                    open_.difference_update(stack[at:])
-                    del stack[at:]
-            elif below not in index:
-                work.append((below, iter(moves[below])))
-            else:
-                low[node] = min(low[node], index[below])
-    return found
 
 
 # -------------------------------------------------------------------------------------- what a configuration shows

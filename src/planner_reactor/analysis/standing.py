@@ -43,6 +43,7 @@ class Standing:
     """Reactions that come and go. What has a situation above it is above it by a reaction that asserts it."""
 
     def __init__(self) -> None:
+        self.changes = 0  # so often something has come or gone
         self._reactions: dict[int, Known] = {}
         self._came: dict[int, int] = {}
         self._next = 0
@@ -64,6 +65,7 @@ class Standing:
         label = reaction.label
         if label in self._reactions:
             self.remove(label)
+        self.changes += 1
         self._reactions[label] = reaction
         self._came[label] = self._next
         self._next += 1
@@ -79,6 +81,7 @@ class Standing:
         """It goes, if it is there."""
         reaction = self._reactions.pop(label, None)
         if reaction is not None:
+            self.changes += 1
             if reaction.situation is not None:
                 del self._serving[reaction.situation][label]
             for name in reaction.asserts:

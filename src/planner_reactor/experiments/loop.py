@@ -13,9 +13,10 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from planner_reactor.analysis.adaptations import Environment
+from planner_reactor.errors import RefusedError
 from planner_reactor.experiments.timing import Fixed, PlannerTime
 from planner_reactor.link.channels import AdaptationChannel, PerceptionChannel
-from planner_reactor.link.messages import Adaptation
+from planner_reactor.link.messages import Adaptation, Enquiry, Perception, Standing
 from planner_reactor.planner.planner import Planner, Step
 from planner_reactor.reactor.laws import CHECKED as LAWS_CHECKED
 from planner_reactor.reactor.reactor import Reactor
@@ -24,6 +25,9 @@ from planner_reactor.trace import Trace
 
 LATENCY = 0.001
 """Seconds that a message takes from one side to the other."""
+
+ASK_AGAIN = 1.0
+"""Seconds after which a planner asks how the reactor stands once more, if it was not told."""
 
 LOOK_AGAIN = 1.0
 """Seconds after which a world is asked again whether it is finished, if nothing is traced meanwhile."""
@@ -80,8 +84,8 @@ class Loop:
         self.trace = Trace(lambda: self.scheduler.now, keep=keep_trace)
         self.host = make_host(self.scheduler, self.trace)
         self.planner = planner
-        limits = {name: process.limit for name, process in self.host.processes.items()}
-        planner.meet(Environment(self.host.signatures, limits))
+        self.planners = 1
+        self._meet(planner)
         self.planner_time = planner_time or Fixed()
         self.perceptions = PerceptionChannel(self._perceived)
         self.adaptations = AdaptationChannel(self._issued)
@@ -108,16 +112,22 @@ class Loop:
         wall, cpu = time.perf_counter(), time.process_time()
         if not self.planner_time.deterministic:
             self.trace.record("not_deterministic", because="the planner is charged its real time")
-        self.reactor.start()
+        self._begin()
         if self.host.world is not None:
             self.host.world.start(self.scheduler)
         self.scheduler.soon(self._turn)
         self._look()
-        self.reactor.executer.run(until=until)
+        self._go(until)
         self.reactor.laws.check()
         self.costs.simulated = self.scheduler.now
         self.costs.wall = time.perf_counter() - wall
         self.costs.cpu = time.process_time() - cpu
+
+    def _begin(self) -> None:
+        self.reactor.start()
+
+    def _go(self, until: float | None) -> None:
+        self.reactor.executer.run(until=until)
 
     def _look(self) -> None:
         """A world may finish without a word: ask it now and then, as long as anything goes on."""
@@ -128,6 +138,51 @@ class Loop:
 
     # -- the planner's side
 
+    def _meet(self, planner: Planner) -> None:
+        limits = {name: process.limit for name, process in self.host.processes.items()}
+        planner.meet(Environment(self.host.signatures, limits))
+
+    def succeed(self, planner: Planner) -> None:
+        """The planner's process is gone, or has lost its office; this one begins, and asks how the reactor stands."""
+        self.planners += 1
+        self.planner, self._busy = planner, False
+        self._unanswered.clear()
+        self._completes_ideal = None
+        self._meet(planner)
+        planner.enquire(self.planners)
+        self._turn()
+
+    def _enquire(self, enquiry: Enquiry) -> None:
+        """The planner asks; if the answer is lost with the reactor, or is refused, it asks again."""
+        self.scheduler.call_after(LATENCY, lambda: self._asked(enquiry))
+        self.scheduler.call_after(ASK_AGAIN, lambda: self._ask_again(self.planner))
+
+    def _asked(self, enquiry: Enquiry) -> None:
+        try:
+            standing = self.reactor.enquire(enquiry)
+        except RefusedError:
+            return
+        self.scheduler.call_after(LATENCY, lambda: self._told(standing))
+
+    def _told(self, standing: Standing) -> None:
+        self.planner.resume(standing)
+        self._turn()
+
+    def _ask_again(self, planner: Planner) -> None:
+        if planner is self.planner and planner.waits:
+            planner.enquire(self.planners)
+            self._turn()
+
+    def _take(self) -> list[Perception]:
+        """What the planner is told now: in order, without gaps (law 10)."""
+        return [perception for perception in self.perceptions.take() if self._next(perception)]
+
+    def _next(self, perception: Perception) -> bool:
+        if perception.number != self._acted_on + 1:
+            self.reactor.laws.breach(10, f"perception {perception.number} after {self._acted_on}")
+        self._acted_on = perception.number
+        return True
+
     def _perceived(self) -> None:
         if not self._busy:
             self.scheduler.call_after(LATENCY, self._turn)
@@ -136,14 +191,13 @@ class Loop:
         """Let the planner take what it has been told, and do one step."""
         if self._busy:
             return
-        for perception in self.perceptions.take():
-            if perception.number != self._acted_on + 1:
-                self.reactor.laws.breach(10, f"perception {perception.number} after {self._acted_on}")
-            self._acted_on = perception.number
+        for perception in self._take():
             self.planner.perceive(perception)
         outstanding = len(self.planner.expectation)
         began = time.process_time()
         step = self.planner.step()
+        while step is not None and step.kind == "verify":  # in modelled time a verdict is known at once
+            step = self.planner.step()
         cpu = time.process_time() - began
         if step is None:
             return
@@ -153,11 +207,19 @@ class Loop:
             self.trace.record("adaptation_withheld", purpose=step.purpose, because=step.withheld)
         self._busy = True
         charge = self.planner_time.seconds(step, outstanding, cpu)
-        self.scheduler.call_after(charge, lambda: self._thought(step))
+        planner = self.planner
+        self.scheduler.call_after(charge, lambda: self._thought(step, planner))
 
-    def _thought(self, step: Step) -> None:
+    def _thought(self, step: Step, planner: Planner) -> None:
+        if planner is not self.planner:
+            return  # it is gone, and what it thought with it
         self._busy = False
-        for adaptation in step.adaptations:
+        if step.enquiry is not None:
+            self._enquire(step.enquiry)
+        for adaptation in step.adaptations if step.kind == "repeat" else ():
+            self.trace.record("adaptation_issued_again", id=adaptation.id)
+            self._transmit(adaptation)
+        for adaptation in step.adaptations if step.kind != "repeat" else ():
             self._send(adaptation, step)
             if self._completes_ideal is None and self.planner.ideal:
                 self._completes_ideal = adaptation.id
@@ -188,6 +250,9 @@ class Loop:
             adopts=adaptation.adopts, drops=adaptation.drops, assumption=step.assumption, cause=step.cause,
             assumptions=self.planner.assumptions_in_use,
         )  # fmt: skip
+        self._transmit(adaptation)
+
+    def _transmit(self, adaptation: Adaptation) -> None:
         self.adaptations.send(adaptation)
 
     def _issued(self) -> None:
