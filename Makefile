@@ -46,6 +46,9 @@ fuzz: $(VENV)/dev.done  ## a million hostile texts, journals, frames and adaptat
 nets: $(VENV)/dev.done  ## a thousand random nets, each also searched by SPIN (half an hour; needs spin and gcc)
 	SPIN_NETS=1000 $(BIN)/python -m pytest -q -s tests/analysis/test_networks.py -k each_random_net
 
+chaos: $(VENV)/dev.done  ## ten minutes of faults on two processes, inside adaptations too; goes on where it stopped
+	nice -n 10 $(BIN)/python -m planner_reactor.simulation
+
 clean:  ## forget what was made
 	rm -rf out $(VENV) .pytest_cache .mypy_cache .ruff_cache .hypothesis .import_linter_cache
 

@@ -182,6 +182,16 @@ class Journal:
             return False
         return True
 
+    def renew(self, time: float) -> bool:
+        """If it is not known what is on the disk, begin anew with what the state is; is it known now?"""
+        if not self.trusted:
+            try:
+                self._disk.replace(HEADER + framed(Snapshot(self.state, time), 1))
+            except DiskError:
+                return False
+            self.records, self.trusted = 1, True
+        return True
+
 
 def framed(record: Record, number: int) -> bytes:
     """A record as bytes; `number` counts the records of its file from 1."""

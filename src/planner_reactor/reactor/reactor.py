@@ -23,6 +23,7 @@ from planner_reactor.reactor.assumptions import Assumptions
 from planner_reactor.reactor.built_ins import BuiltIns
 from planner_reactor.reactor.composition import undone
 from planner_reactor.reactor.disks import NoDisk
+from planner_reactor.reactor.doubts import Doubts
 from planner_reactor.reactor.enquiries import repeated, standing
 from planner_reactor.reactor.freezing import Freezer
 from planner_reactor.reactor.heartbeat import Heartbeat
@@ -111,7 +112,7 @@ class Reactor:
         self.readings: Readings = Readings(scheduler, self.host, self.assumptions, self._assumption_told)
         self.host.listen(self.readings.noticed)
         self.freezer, self.storms, self.heartbeat = Freezer(self), Storms(self, intensity), Heartbeat(self)
-        self._life = Life(self, EQUATION_3)
+        self._life, self.doubts = Life(self, EQUATION_3), Doubts(scheduler, self.journal)
 
     def start(self) -> Root:
         """Begin to act, on what the journal says: with no reactions yet, if it is new.
@@ -191,12 +192,11 @@ class Reactor:
             if reaction.situation and reaction.spawns:
                 self.situations.spawned.add(reaction.situation)
 
-    def _refused(self, adaptation: Adaptation, reason: str, message: str) -> None:
+    def _refused(self, refused: Adaptation, reason: str, message: str, *, doubtful: bool = False) -> None:
         self.counts["refused"] += 1
-        self.trace.record("adaptation_refused", id=adaptation.id, reason=reason, message=message)
-        self.perceive(
-            "adaptation_refused", str(adaptation.id), cause=reason, values=(message,), epoch=adaptation.epoch
-        )
+        self.trace.record("adaptation_refused", id=refused.id, reason=reason, message=message)
+        told: dict[str, Any] = {"cause": reason, "values": (message,), "epoch": refused.epoch}
+        self.doubts.settle(lambda: self.perceive("adaptation_refused", str(refused.id), **told), doubtful=doubtful)
 
     def _commit(self, number: int) -> bool:
         """COMMIT[number]: from here on the adaptation counts, and what now rests on a failed assumption waits."""
@@ -238,7 +238,7 @@ class Reactor:
             return
         self._forget(r.label for r in transaction.reactions)
         if transaction.state == "refused":
-            self._refused(adaptation, transaction.reason, transaction.problem)
+            self._refused(adaptation, (why := transaction.reason), transaction.problem, doubtful=why == "disk")
             return
         self.counts["timed_out"] += 1
         self.trace.record("adaptation_timed_out", id=adaptation.id, bound=transaction.limit)

@@ -1,0 +1,71 @@
+"""What one reactor sees of a host that outlives it: the same processes, with a ledger of commands (law 11).
+
+When the reactor's process ends, its drivers see the connection go, and abandon what was begun on its behalf: sent =
+done + failed + abandoned + live, and nothing is abandoned twice.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Generator
+from functools import partial
+from types import GeneratorType
+from typing import Any
+
+from msgspec.structs import replace
+
+from planner_reactor.runtime import Host
+
+
+class Drivers:
+    """One incarnation's view of `base`: `host` is what its reactor is given."""
+
+    def __init__(self, base: Host, counts: Counter[str]) -> None:
+        self.counts = counts
+        self.live: dict[int, Generator[Any, Any, Any]] = {}
+        self._sent = 0
+        self.host = Host(base.name)
+        self.host.functions = base.functions
+        self.host.assumptions = base.assumptions
+        self.host.world = base.world
+        for name, process in base.processes.items():
+            self.host.processes[name] = replace(process, routine=partial(self._run, process.routine))
+
+    def _run(self, routine: Callable[..., Any], *arguments: Any) -> Any:
+        self.counts["sent"] += 1
+        try:
+            begun = routine(*arguments)
+        except Exception:
+            self.counts["failed"] += 1
+            raise
+        if not isinstance(begun, GeneratorType):
+            self.counts["done"] += 1
+            return begun
+        self._sent += 1
+        number = self._sent
+        self.live[number] = driven = self._drive(number, begun)
+        return driven
+
+    def _drive(self, number: int, begun: Generator[Any, Any, Any]) -> Generator[Any, Any, Any]:
+        outcome = "abandoned"
+        try:
+            result = yield from begun
+            outcome = "done"
+            return result
+        except GeneratorExit:
+            raise
+        except BaseException:
+            outcome = "failed"
+            raise
+        finally:
+            del self.live[number]
+            self.counts[outcome] += 1
+
+    def close(self) -> int:
+        """The process is gone: everything it commanded is abandoned; how much that was."""
+        running = dict(self.live)
+        for number, command in running.items():
+            command.close()
+            if self.live.pop(number, None) is not None:  # it had not begun
+                self.counts["abandoned"] += 1
+        return len(running)
