@@ -66,8 +66,10 @@ class Assumptions:
             self._journal.note(Assumed(assumption, True, now))
         else:
             return
-        if tell:
-            self._told("assumption_holds" if holds else "assumption_failure", assumption)
+        if tell and holds:
+            self._told("assumption_holds", assumption)
+        elif tell:
+            self._told("assumption_failure", assumption)
         self.enable()
         self.disable()
 

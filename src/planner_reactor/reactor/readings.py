@@ -54,19 +54,19 @@ class Mind:
 
 
 class Readings:
-    """All assumptions' readings. `doubted(kind, assumption, cause)` hears when a sensor begins to be of no worth."""
+    """All assumptions' readings. `told(kind, assumption, cause)` hears when a sensor begins to be of no worth."""
 
     def __init__(
         self,
         scheduler: Scheduler,
         host: Host,
         assumptions: Assumptions,
-        doubted: Callable[[PerceptionKind, str, str], None],
+        told: Callable[[PerceptionKind, str, str], None],
     ) -> None:
         self._scheduler = scheduler
         self._host = host
         self._assumptions = assumptions
-        self._doubted = doubted
+        self._told = told
         self._minds: dict[str, Mind] = {}
         self.doubts = 0  # readings that were stale or stuck
         self._failing: dict[str, int] = {}  # of those that count as holding: readings in a row that say it fails
@@ -170,5 +170,5 @@ class Readings:
 
     def _doubt(self, assumption: str, mind: Mind, doubt: str) -> None:
         if doubt and doubt != mind.doubt:
-            self._doubted("assumption_unknown", assumption, doubt)
+            self._told("assumption_unknown", assumption, doubt)
         mind.doubt = doubt
