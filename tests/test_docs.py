@@ -224,7 +224,8 @@ def test_the_fields_of_an_adaptation_are_told() -> None:
 
 
 def test_the_reasons_of_refusals_are_told() -> None:
-    code = "".join((PACKAGE / f"reactor/{name}.py").read_text() for name in ("admission", "adaptation", "reactor"))
+    files = ("admission", "adaptation", "migrating", "reactor", "waiting")
+    code = "".join((PACKAGE / f"reactor/{name}.py").read_text() for name in files)
     told = {name for row in rows(REACTOR, "### Examined") for name in quoted(row[0])}
     assert told == set(re.findall(r'RefusedError\(\s*"(\w+)"', code))
 

@@ -16,9 +16,6 @@ from planner_reactor.reactor.reactions import Reactions
 from planner_reactor.rs.reactions import Reaction
 from planner_reactor.rs.terms import Call, Symbol, Text, Value, calls, operands
 
-MIGRATE = "migrate"
-"""The reason, as a word."""
-
 
 def refuse_lost_arguments(
     adaptation: Adaptation,
@@ -53,7 +50,7 @@ def _taken(reactions: Iterable[Reaction]) -> int | None:
 def _changes(situation: str, adaptation: Adaptation, old: int, now: int) -> None:
     if adaptation.mode != "drain":
         raise RefusedError(
-            MIGRATE, f"{situation} took {old} arguments, it takes {now}: expected mode drain, or another situation"
+            "migrate", f"{situation} took {old} arguments, it takes {now}: expected mode drain, or another situation"
         )
 
 
@@ -62,20 +59,20 @@ def _migrates(
 ) -> None:
     situation, how = change.situation, change.migrate or ()
     if mode != "drain":
-        raise RefusedError(MIGRATE, f"nothing of {situation} is held back in mode {mode}: expected mode drain")
+        raise RefusedError("migrate", f"nothing of {situation} is held back in mode {mode}: expected mode drain")
     if old is None or now is None or change.fresh:
-        raise RefusedError(MIGRATE, f"no reaction of {situation} is replaced: there is nothing to migrate")
+        raise RefusedError("migrate", f"no reaction of {situation} is replaced: there is nothing to migrate")
     if len(how) != now:
-        raise RefusedError(MIGRATE, f"{situation} takes {now} arguments, and {len(how)} are made for it")
+        raise RefusedError("migrate", f"{situation} takes {now} arguments, and {len(how)} are made for it")
     for way in how:
         if isinstance(way, int):
             if not 1 <= way <= old:
-                raise RefusedError(MIGRATE, f"{situation} had {old} arguments: there is no argument {way}")
+                raise RefusedError("migrate", f"{situation} had {old} arguments: there is no argument {way}")
         elif way not in functions:
             hint = nearest(way, functions)
-            raise RefusedError(MIGRATE, f"no function {way} is registered" + (f", {hint}" if hint else ""))
+            raise RefusedError("migrate", f"no function {way} is registered" + (f", {hint}" if hint else ""))
         elif not _takes(functions[way], old):
-            raise RefusedError(MIGRATE, f"{way} does not take the {old} arguments that {situation} had")
+            raise RefusedError("migrate", f"{way} does not take the {old} arguments that {situation} had")
 
 
 def _takes(function: Callable[..., Value], count: int) -> bool:
@@ -95,5 +92,5 @@ def _asserted(situation: str, count: int, reactions: Iterable[Reaction]) -> None
             if call.name in ("ASSERT", "REASSERT") and named == situation and len(call.arguments) - 1 != count:
                 given = len(call.arguments) - 1
                 raise RefusedError(
-                    MIGRATE, f"P[{reaction.label}] asserts {situation} with {given} arguments, it takes {count}"
+                    "migrate", f"P[{reaction.label}] asserts {situation} with {given} arguments, it takes {count}"
                 )

@@ -21,9 +21,6 @@ from planner_reactor.link.surgeries import drained
 from planner_reactor.reactor.reactions import Reactions
 from planner_reactor.rs.reactions import Onward, Reaction, cycle, reach, upside_down
 
-DEADLOCK = "deadlock"
-"""The reason, as a word."""
-
 
 def refuse_waiting_for_itself(
     adaptation: Adaptation,
@@ -48,13 +45,13 @@ def refuse_waiting_for_itself(
 def _order(adaptation: Adaptation, present: Reactions, below: Onward) -> None:
     if (wrong := upside_down(drained(adaptation), below)) is not None:
         child, parent = wrong
-        raise RefusedError(DEADLOCK, f"{child} is held before {parent}, which needs it: expected {parent} first")
+        raise RefusedError("deadlock", f"{child} is held before {parent}, which needs it: expected {parent} first")
     if adaptation.mode == "versions":
         removed = [situation for n in adaptation.kills if (situation := present[n].situation) is not None]
         if (wrong := upside_down(removed, below)) is not None:
             child, parent = wrong
             raise RefusedError(
-                DEADLOCK, f"what serves {child} goes before what serves {parent}: expected {parent} first"
+                "deadlock", f"what serves {child} goes before what serves {parent}: expected {parent} first"
             )
 
 
@@ -62,7 +59,7 @@ def _retired(adaptation: Adaptation, retired: Iterable[Reaction]) -> None:
     for reaction in retired:
         if asserted := [s for s in reaction.asserts if s in adaptation.removed]:
             raise RefusedError(
-                DEADLOCK, f"P[{reaction.label}], retired and not gone yet, may assert {asserted[0]}: expected later"
+                "deadlock", f"P[{reaction.label}], retired and not gone yet, may assert {asserted[0]}: expected later"
             )
 
 
@@ -75,12 +72,12 @@ def _cycle(adaptation: Adaptation, below: Onward, under_way: Iterable[Adaptation
         for one, needed in waiting.items()
     }
     if (way := cycle(needs)) is not None:
-        raise RefusedError(DEADLOCK, f"adaptations would wait for each other: {' → '.join(way)}")
+        raise RefusedError("deadlock", f"adaptations would wait for each other: {' → '.join(way)}")
 
 
 def _disabled(adaptation: Adaptation, below: Onward, disabled: Callable[[str], object]) -> None:
     held = drained(adaptation)
     if found := sorted(s for s in reach(held, below) if disabled(s)):
         raise RefusedError(
-            DEADLOCK, f"{found[0]} is disabled, and {held[0]} cannot end without it: expected mode drain"
+            "deadlock", f"{found[0]} is disabled, and {held[0]} cannot end without it: expected mode drain"
         )
