@@ -19,7 +19,7 @@ from planner_reactor.rs.checks import check_text
 from tests.fuzz.messages import framed_content, in_arrays
 from tests.fuzz.subjects import SHARES, attacked, survived
 from tests.reactor.disks import TornDisk
-from tests.reactor.driving import Bench
+from tests.reactor.driving import FIRST, SECOND, Bench
 
 MANY = int(os.environ.get("FUZZ_INPUTS", "2000"))
 PARTS = 4
@@ -77,6 +77,26 @@ def test_what_cannot_be_written_down_is_refused(hostile: Adaptation) -> None:
     assert [(p.kind, p.cause) for p in bench.perceptions() if p.kind == "adaptation_refused"] == [
         ("adaptation_refused", "text")
     ]
+    assert bench.reactor.laws.violations == []
+
+
+def test_what_is_removed_may_not_be_served_by_what_is_added() -> None:
+    """Mode `versions` began no new version of it: an instance was served by the old reaction and by the new one."""
+    bench = Bench()
+    bench.at(0.0, FIRST)
+    bench.at(1.0, msgspec.structs.replace(SECOND, removed=("part",), mode="versions"))
+    bench.run(3.0)
+    assert [p.cause for p in bench.perceptions() if p.kind == "adaptation_refused"] == ["structure"]
+    assert bench.reactor.laws.violations == []
+
+
+@pytest.mark.parametrize("deadline", [-1.0, float("nan")])
+def test_a_deadline_that_cannot_be_kept_is_refused(deadline: float) -> None:
+    bench = Bench()
+    bench.at(0.0, FIRST)
+    bench.at(1.0, msgspec.structs.replace(SECOND, deadline=deadline))
+    bench.run(3.0)
+    assert [p.cause for p in bench.perceptions() if p.kind == "adaptation_refused"] == ["mode"]
     assert bench.reactor.laws.violations == []
 
 

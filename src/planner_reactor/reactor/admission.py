@@ -71,6 +71,8 @@ def _identity(adaptation: Adaptation, standing: Standing) -> None:
         raise RefusedError("epoch", f"epoch {adaptation.epoch}, expected at least {standing.epoch}")
     if adaptation.mode not in MODES:
         raise RefusedError("mode", f"there is no mode {adaptation.mode}, expected {' or '.join(MODES)}")
+    if adaptation.deadline is not None and not adaptation.deadline >= 0:
+        raise RefusedError("mode", f"a deadline of {adaptation.deadline} s, expected 0 or more")
 
 
 def _versions(adaptation: Adaptation, standing: Standing) -> None:
@@ -129,6 +131,9 @@ def _structure(adaptation: Adaptation, standing: Standing, new: tuple[Reaction, 
     for reaction in (*new, *after.bereft(killed)):
         if orphans := [name for name in reaction.asserts if not after.serving(name)]:
             raise RefusedError("structure", f"P[{reaction.label}] asserts {', '.join(orphans)}, which nothing serves")
+    for situation in adaptation.removed:
+        if serving := [f"P[{r.label}]" for r in after.serving(situation)]:
+            raise RefusedError("structure", f"{situation} is removed, and still served by {', '.join(serving)}")
     named = dict.fromkeys(r.situation for r in (*new, *killed) if r.situation is not None)
     if (way := after.cycle_from(named)) is not None:
         raise RefusedError("structure", f"a situation is asserted from below itself: {' → '.join(way)}")

@@ -119,8 +119,8 @@ class Basic:
 class Run:
     """One run of a basic process that did not end at its start."""
 
-    __slots__ = ("_arguments", "_basic", "_begun", "_deadline", "_routine", "_signal", "_strand", "_timed",
-                 "_timer", "over")  # fmt: skip
+    __slots__ = ("_arguments", "_basic", "_begun", "_deadline", "_instant", "_routine", "_signal", "_strand", "_timed",
+                 "_timer", "_turns", "over")  # fmt: skip
 
     def __init__(self, basic: Basic, strand: Strand, arguments: tuple[Value, ...], routine: Any) -> None:
         self._basic = basic
@@ -133,6 +133,8 @@ class Run:
         self._timed = False  # waits for a signal, but only so long
         self._timer: Timer | None = None
         self._deadline: Timer | None = None
+        self._instant = self._begun
+        self._turns = 0  # at this instant
         self.over = False
         strand.link = self
         basic.running += 1
@@ -214,12 +216,28 @@ class Run:
         self._proceed(False if self._timed else None)
 
     def _proceed(self, value: object) -> None:
+        if self._overrun():
+            return
         if not self.over and (outcome := self.go(value)) is not None:
             early = self._begun + self._basic._low - self._basic._kernel.scheduler.now
             if early > ROUNDING:
                 self.hold(outcome)
             else:
                 self._end(outcome)
+
+    def _overrun(self) -> bool:
+        """A host's code that waits for no time at all, again and again, uses up its turns like any other (Zeno)."""
+        kernel = self._basic._kernel
+        if self._instant != kernel.scheduler.now:
+            self._instant, self._turns = kernel.scheduler.now, 0
+        self._turns += 1
+        if self.over or self._turns <= kernel.budgets.turns:
+            return False
+        kernel.zeno = self._basic.name
+        kernel.note("zeno", name=self._basic.name, root=self._strand.root.name)
+        self.abandon()
+        self._end(Outcome(False, cause="budget"))
+        return True
 
     def _too_late(self) -> None:
         self._deadline = None
