@@ -244,3 +244,18 @@ def test_information_that_was_asked_for_is_reported(bench: Bench) -> None:
     (told,) = [p for p in bench.perceptions() if p.kind == "information"]
     assert (told.subject, told.values) == ("seen", (42,))
     assert 9 not in bench.reactor.reactions  # it has ended by itself
+
+
+@pytest.mark.parametrize("root", ["STOP :; (Do[think, 3] ; ASSERT[work])", "STOP :; (ASSERT[work] | Do[think, 1])"])
+def test_a_root_that_does_more_than_assert_is_not_killed_for_it_might_be_at_work(bench: Bench, root: str) -> None:
+    text = FIRST.definitions.replace("STOP :; ASSERT[work]", root)
+    bench.reactor.receive(replace(FIRST, definitions=text))
+    serving = "P[8] = SIT[work]<k> :; (Do[new, 1] ; SUCCEED[work, k])"
+    work = (change("work", 1),)
+    other = Adaptation(id=2, definitions=serving, changes=work, removed=("part",), kills=(0, 1, 2), adds=(8,))
+    bench.at(5.5, other)
+    bench.run(20.0)
+    (refused,) = [p for p in bench.perceptions() if p.kind == "adaptation_refused"]
+    assert refused.cause == "structure"
+    assert "does more in its body than assert" in str(refused.values[0])
+    assert bench.reactor.laws.violations == []

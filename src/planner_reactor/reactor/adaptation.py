@@ -28,7 +28,14 @@ from planner_reactor.reactor.committed import Committed
 from planner_reactor.reactor.journal import Begun, Decided, Journal
 from planner_reactor.reactor.reactions import Reactions
 from planner_reactor.reactor.waiting import refuse_waiting_for_itself
-from planner_reactor.rs.reactions import Reaction, drain_script, removal_script, versions_script, wait_script
+from planner_reactor.rs.reactions import (
+    Reaction,
+    drain_script,
+    removal_script,
+    rests_when_drained,
+    versions_script,
+    wait_script,
+)
 from planner_reactor.rs.terms import Process
 from planner_reactor.runtime import Executer, Root, Scheduler, Timer
 
@@ -234,4 +241,8 @@ def refuse_unsafe_kills(adaptation: Adaptation, killed: tuple[Reaction, ...]) ->
         elif not reaction.monitors and not (reaction.asserts and held.issuperset(reaction.asserts)):
             raise RefusedError(
                 "structure", f"P[{reaction.label}] is no monitor and asserts more than is drained: it may be at work"
+            )
+        elif not reaction.monitors and not rests_when_drained(reaction.schema.body):
+            raise RefusedError(
+                "structure", f"P[{reaction.label}] does more in its body than assert: it may be at work"
             )

@@ -13,7 +13,20 @@ from typing import TypeAlias
 
 import msgspec
 
-from planner_reactor.rs.terms import STOP, Call, Loop, Number, Process, Schema, Spawn, Symbol, Text, calls, cond
+from planner_reactor.rs.terms import (
+    STOP,
+    Call,
+    Loop,
+    Number,
+    Process,
+    Schema,
+    Spawn,
+    Symbol,
+    Text,
+    calls,
+    cond,
+    operands,
+)
 
 REACTION = "P"
 """The schema of which every reaction is a clause."""
@@ -126,6 +139,18 @@ def _script(hold: list[Process], surgery: Surgery, held: tuple[str, ...]) -> Pro
     steps += [Call("POST", (Number(n),)) for n in surgery.adds]
     steps += [Call("UNINHIBIT", (Symbol(s),)) for s in reversed(held)]
     return cond(*steps) if steps else STOP
+
+
+_RESTS = frozenset({"ASSERT", "REASSERT", "DISABLED", "ENABLED", "STOP", "ABORT", "NIL"})
+
+
+def rests_when_drained(process: Process) -> bool:
+    """Is a reaction that serves no situation at rest whenever all that it asserts is drained?
+
+    It senses in the conditions of its loops; in their bodies it does nothing but assert.
+    """
+    working = operands(process)[1:] if isinstance(process, Loop | Spawn) else (process,)
+    return all(call.name in _RESTS for part in working for call in calls(part))
 
 
 def served_by(process: Process) -> str | None:
