@@ -10,7 +10,7 @@ import pytest
 
 from planner_reactor.link.messages import Adaptation, Perception, Standing
 from planner_reactor.planner import Planner
-from tests.planner.driving import Book, kitting
+from tests.planner.driving import Book, kitting, perception
 
 DOMAIN = kitting()
 
@@ -38,10 +38,10 @@ class Reactor:
             number=1, time=0.0, kind="adaptation_applied", subject=str(adaptation.id), epoch=adaptation.epoch
         )
 
-    def standing(self) -> Standing:
+    def standing(self, enquirer: int) -> Standing:
         self.epoch += 1
         return Standing(
-            enquirer=self.epoch, epoch=self.epoch, versions=dict(self.book.versions), rests_on=dict(self.rests_on),
+            enquirer=enquirer, epoch=self.epoch, versions=dict(self.book.versions), rests_on=dict(self.rests_on),
             clauses={n: f"P[{n}] = {text}" for n, text in self.book.reactions.items()},
             adopted=tuple(sorted(self.adopted)), failed=self.failed, given_up=self.given_up,
             highest_label=self.book.highest,
@@ -55,8 +55,7 @@ def issued(planner: Planner, reactor: Reactor, most: int = 10_000) -> Iterator[A
         if step is None:
             return
         if step.enquiry is not None:
-            standing = reactor.standing()
-            planner.resume(standing)
+            planner.resume(reactor.standing(step.enquiry.enquirer))
         for adaptation in step.adaptations:
             planner.perceive(reactor.apply(adaptation))
             yield adaptation
@@ -83,7 +82,7 @@ def test_nothing_is_adapted_where_nothing_differs() -> None:
     second = successor(reactor)
     assert list(issued(second, reactor)) == []
     assert second.ideal
-    assert second.taken_over == len(second.model.segments)
+    assert second.statistics()["taken_over"] == len(second.model.segments)
     assert second.relaxed.keys() == set(DOMAIN.assumptions)
     assert what_stands(reactor) == before
 
@@ -106,3 +105,108 @@ def test_after_a_crash_at_every_step_the_same_reactor_comes_out_of_as_many_adapt
             break
         steps += 1 if steps < 12 else 7
     assert crashes > 6
+
+
+def test_an_assumption_that_failed_while_no_planner_was_there_is_given_up() -> None:
+    reactor, _ = undisturbed(relax=())
+    other = Reactor()
+    by_itself = Planner(DOMAIN, verify=False, relax=())
+    list(issued(by_itself, other))
+    by_itself.perceive(perception("assumption_failure", "AQ"))
+    expected = len(list(issued(by_itself, other)))
+    reactor.failed = ("AQ",)
+    second = successor(reactor, relax=())
+    assert len(list(issued(second, reactor))) == expected == 4
+    assert what_stands(reactor) == what_stands(other)
+    assert second.relaxed == {"AQ": "forced"}
+
+
+def test_what_failed_and_may_return_is_still_waited_for_and_comes_back() -> None:
+    reactor = Reactor()
+    first = Planner(DOMAIN, verify=False, relax=())
+    list(issued(first, reactor))
+    before = what_stands(reactor)
+    first.perceive(perception("assumption_failure", "ADD"))
+    list(issued(first, reactor))
+    reactor.failed = ("ADD",)
+    second = successor(reactor, relax=())
+    assert list(issued(second, reactor)) == []
+    assert second.relaxed == {"ADD": "forced"}
+    reactor.failed = ()  # it returned while no planner was there
+    third = successor(reactor, relax=())
+    assert len(list(issued(third, reactor))) == 1
+    assert what_stands(reactor) == before
+
+
+def test_what_nobody_planned_goes_once_nothing_asserts_it() -> None:
+    reactor, _ = undisturbed(relax=())
+    whole = what_stands(reactor)
+    label = reactor.book.highest + 1
+    reactor.book.reactions |= {label: "STOP :; ASSERT[Odd]", label + 1: "SIT[Odd]<k> :; FAIL[Odd, k]"}
+    reactor.book.highest, reactor.book.versions["Odd"] = label + 1, 1
+    second = successor(reactor, relax=())
+    (removal,) = issued(second, reactor)
+    assert (removal.kills, removal.removed) == ((label, label + 1), ("Odd",))
+    assert what_stands(reactor) == whole
+
+
+def test_a_reaction_that_was_changed_by_hand_is_planned_again_and_nothing_else() -> None:
+    reactor, _ = undisturbed(relax=())
+    whole = what_stands(reactor)
+    label = next(n for n, text in reactor.book.reactions.items() if text.startswith("SIT[FinishTray]"))
+    reactor.book.reactions[label] = "SIT[FinishTray]<k> :; FAIL[FinishTray, k]"
+    (repair,) = issued(successor(reactor, relax=()), reactor)
+    assert [c.situation for c in repair.changes] == ["FinishTray"]
+    assert what_stands(reactor) == whole
+
+
+def test_a_planner_that_was_overtaken_does_nothing_any_more() -> None:
+    reactor = Reactor()
+    old = Planner(DOMAIN, verify=False)
+    list(issued(old, reactor, 3))
+    list(issued(successor(reactor), reactor))
+    late = next(step.adaptations[0] for step in iter(old.step, None) if step.adaptations)
+    old.perceive(perception("adaptation_refused", str(late.id), cause="epoch"))
+    assert old.fenced
+    assert old.step() is None
+
+
+def test_answers_to_another_planner_are_nothing_to_this_one() -> None:
+    reactor = Reactor()
+    list(issued(Planner(DOMAIN, verify=False), reactor, 3))
+    second = successor(reactor)
+    list(issued(second, reactor, 20))
+    pending = second.pending
+    second.perceive(perception("adaptation_refused", "1", cause="epoch"))
+    assert not second.fenced
+    assert second.pending == pending
+
+
+def test_a_reactor_that_begins_anew_as_it_was_is_told_again_what_was_not_answered() -> None:
+    reactor = Reactor()
+    planner = Planner(DOMAIN, verify=False)
+    list(issued(planner, reactor, 3))
+    open_ = next(step.adaptations[0] for step in iter(planner.step, None) if step.adaptations)
+    planner.perceive(perception("restarted", "sound", *reactor.book.versions.items()))
+    again = planner.step()
+    assert again is not None
+    assert (again.kind, again.adaptations) == ("repeat", (open_,))
+    reactor.apply(open_)  # as if it had been applied before the crash
+    planner.perceive(perception("restarted", "sound", *reactor.book.versions.items()))
+    assert next(step.kind for step in iter(planner.step, None)) == "repeat"
+
+
+@pytest.mark.parametrize("damaged", [True, False])
+def test_a_reactor_that_has_lost_something_is_asked_how_it_stands(damaged: bool) -> None:
+    reactor, earlier = Reactor(), Reactor()
+    planner = Planner(DOMAIN, verify=False)
+    for _ in range(4):
+        for adaptation in issued(planner, reactor, 2):
+            if not earlier.book.reactions:
+                earlier.apply(adaptation)
+    subject = "damaged" if damaged else "sound"
+    planner.perceive(perception("restarted", subject, *earlier.book.versions.items()))
+    list(issued(planner, earlier))
+    whole, _ = undisturbed()
+    assert planner.ideal
+    assert what_stands(earlier) == what_stands(whole)

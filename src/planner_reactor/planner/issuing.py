@@ -30,6 +30,13 @@ Monitor = tuple[str, str]
 """ASSUMONITOR or HOLDMONITOR, and the assumption that it watches."""
 
 
+class Stranger(msgspec.Struct, frozen=True):
+    """A standing reaction that nobody here issued: what it serves (or ""), and by which labels that is asserted."""
+
+    situation: str
+    asserted_by: frozenset[int] = frozenset()
+
+
 class UnderWay(msgspec.Struct, frozen=True):
     """An adaptation that was issued and not yet answered, and how to take it back."""
 
@@ -39,7 +46,7 @@ class UnderWay(msgspec.Struct, frozen=True):
     before: tuple[tuple[Situation, Segment | None], ...]
     monitors: dict[Monitor, int]
     withdrawn: tuple[Situation, int | None] | None = None  # a goal, and the label of what asserted it
-    strangers: Mapping[int, str] = {}  # of the reactions that it removes
+    strangers: Mapping[int, Stranger] = {}  # of the reactions that it removes
 
 
 class Difference(msgspec.Struct, frozen=True):
@@ -59,7 +66,7 @@ class _Parts:
     removed: list[str] = field(default_factory=list)
     adds: list[int] = field(default_factory=list)  # top-down
     given_up: tuple[str, ...] = ()
-    strangers: dict[int, str] = field(default_factory=dict)
+    strangers: dict[int, Stranger] = field(default_factory=dict)
 
 
 @dataclass(slots=True)
@@ -81,7 +88,7 @@ class Issuer:
     refused_alone: int = 0  # adaptations of no situation that were not applied, in a row
     sheets: Sheets = field(init=False)
     strays: list[int] = field(default_factory=list)  # monitors that were to be removed, and are still there
-    strangers: dict[int, str] = field(default_factory=dict)  # reactions that nobody here issued, with what they serve
+    strangers: dict[int, Stranger] = field(default_factory=dict)  # by label, top-down
     _watched: object = None  # for which assumptions the monitors are as they should be
 
     def __post_init__(self) -> None:
@@ -142,6 +149,8 @@ class Issuer:
                 parts.kills.append(orphan.label)
             parts.removed.append(orphan.name)
             model.remove(orphan)
+        if self.strangers:
+            self._leave_strangers(parts, {*parts.kills})
         monitors = dict(self.monitors)
         self._watch(parts, beliefs, {a: n for a, n in holding.items() if a not in model.uses})
         return self._send(parts, draft, difference.touched, before, monitors, used)
@@ -175,7 +184,7 @@ class Issuer:
         parts, monitors, used = _Parts(), dict(self.monitors), frozenset(self.model.uses)
         parts.strangers, self.strangers = self.strangers, {}
         parts.kills += parts.strangers
-        parts.removed += [situation for situation in parts.strangers.values() if situation]
+        parts.removed += [stranger.situation for stranger in parts.strangers.values() if stranger.situation]
         self._watch(parts, beliefs, holding)
         return self._send(parts, None, frozenset(), (), monitors, used, "remove what nobody planned")
 
@@ -221,6 +230,16 @@ class Issuer:
         parts.adds.append(label)
         return label
 
+    def _leave_strangers(self, parts: _Parts, gone: set[int]) -> None:
+        """What nobody here issued, and only what goes has asserted, goes with it."""
+        staying = {segment.label for segment in self.model} | {*self.model.roots.values(), *self.strangers}
+        for label, stranger in list(self.strangers.items()):
+            if stranger.asserted_by & gone and not stranger.asserted_by & (staying - gone):
+                parts.strangers[label] = self.strangers.pop(label)
+                parts.kills.append(label)
+                parts.removed.append(stranger.situation)
+                gone.add(label)
+
     def _replace(self, parts: _Parts, segment: Segment, text: str) -> None:
         if segment.label is not None:
             parts.kills.append(segment.label)
@@ -237,7 +256,7 @@ class Issuer:
             self.introduced.append(segment)
         else:
             text = self.sheets.reaction(refinement)
-        segment.label = next((n for n, name in self.strangers.items() if name == segment.name), None)
+        segment.label = next((n for n, other in self.strangers.items() if other.situation == segment.name), None)
         fresh = segment.label is None
         if segment.label is not None:
             parts.strangers[segment.label] = self.strangers.pop(segment.label)

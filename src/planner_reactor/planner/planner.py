@@ -199,7 +199,7 @@ class Planner:
             self._gate.meet(environment)
 
     def statistics(self) -> Mapping[str, int]:
-        """Counts: refinements, adaptations by outcome, relaxations by cause, perceptions by kind."""
+        """Counts: refinements, situations taken over, adaptations by outcome, relaxations by cause, perceptions by kind."""
         return {**self._counts, "refinements": self._reducer.memory.worked_out}
 
     # ------------------------------------------------------------------------------------------- one step
@@ -242,9 +242,9 @@ class Planner:
         return self._standing.fenced
 
     @property
-    def taken_over(self) -> int | None:
-        """How many situations were taken over as they stood, if there is a planner before this one."""
-        return self._standing.taken_over
+    def waits(self) -> bool:
+        """Has it asked how the reactor stands, and was not told?"""
+        return self._standing.waits
 
     def enquire(self, enquirer: int) -> None:
         """Ask the reactor how it stands, and plan nothing before it answers; `enquirer` tells planners apart."""

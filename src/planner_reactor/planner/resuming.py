@@ -21,7 +21,7 @@ from planner_reactor.planner.agenda import QUIESCENT
 from planner_reactor.planner.because import Because
 from planner_reactor.planner.beliefs import Beliefs
 from planner_reactor.planner.foresight import shadow_of
-from planner_reactor.planner.issuing import Monitor
+from planner_reactor.planner.issuing import Monitor, Stranger
 from planner_reactor.planner.model import Segment
 from planner_reactor.planner.reducing import Reducer
 from planner_reactor.planner.situations import Refinement
@@ -55,6 +55,10 @@ class Reactions:
         """Failed assumptions whose return is watched for, and the period in ms."""
         return {name: period for (kind, name), period in self.monitors.values() if kind == "HOLDMONITOR"}
 
+    def asserting(self, situation: str | None) -> frozenset[int]:
+        """The labels of what asserts a situation."""
+        return frozenset(label for label, reaction in self.all.items() if situation in reaction.asserts)
+
     def top_down(self, labels: Iterable[int]) -> list[Reaction]:
         """These, whoever asserts a situation before what serves it."""
         wanted, done = {self.all[n] for n in labels}, dict[Reaction, None]()
@@ -77,7 +81,6 @@ class Resumption:
 
     reducer: Reducer
     standing: Standing
-    same: int = 0  # situations that were taken over as they stand
     _reactions: Reactions = field(init=False)
     _shadow: Reducer | None = None
     _beliefs: Beliefs | None = None
@@ -122,10 +125,12 @@ class Resumption:
         self._roots(known)
         self._monitors(known)
         strangers = found.top_down(n for n, r in found.all.items() if n not in known and (r.situation or r.asserts))
-        reducer.issuer.strangers = {r.label: r.situation or "" for r in strangers}
+        reducer.issuer.strangers = {
+            r.label: Stranger(r.situation or "", found.asserting(r.situation)) for r in strangers
+        }
         again = [reducer.model.segments[planned.situation] for planned in different]
         reducer.mark(again, QUIESCENT, Because("standing", f"epoch {self.standing.epoch}"))
-        self.same = len(reducer.model.segments) - len(different)
+        reducer.counts["taken_over"] = len(reducer.model.segments) - len(different)
 
     def _same(self, planned: Segment, label: int) -> bool:
         rests_on = self.standing.rests_on.get(planned.name, ())

@@ -23,17 +23,16 @@ class Standings:
     """What one planner has to do with a standing reactor before it can plan."""
 
     fenced: bool = False
-    taken_over: int | None = None
     _enquirer: int = 0
+    waits: bool = False  # for an answer
     _asks: bool = False  # there is something to ask
-    _waits: bool = False  # for an answer
     _resumption: Resumption | None = None
     _repeats: Issuer | None = None
 
     @property
     def busy(self) -> bool:
         """Is there nothing to be planned for now?"""
-        return self.fenced or self._waits or self._resumption is not None or self._repeats is not None
+        return self.fenced or self.waits or self._resumption is not None or self._repeats is not None
 
     def step(self) -> Step | None:
         """The next piece of work, if there is one."""
@@ -42,11 +41,11 @@ class Standings:
         if self._asks:
             self._asks = False
             return Step("enquire", enquiry=Enquiry(enquirer=self._enquirer), purpose="ask how the reactor stands")
-        if self._waits:
+        if self.waits:
             return None
         if self._resumption is not None:
             if not self._resumption.step():
-                self.taken_over, self._resumption = self._resumption.same, None
+                self._resumption = None
             return Step("resume", purpose="take over what stands")
         issuer, self._repeats = self._repeats, None
         again = tuple(flight.adaptation for flight in issuer.under_way.values()) if issuer else ()
@@ -55,14 +54,14 @@ class Standings:
     def enquire(self, enquirer: int | None = None) -> None:
         """Ask, or ask once more."""
         self._enquirer = self._enquirer if enquirer is None else enquirer
-        self._asks = self._waits = True
+        self._asks = self.waits = True
         self._repeats = None
 
     def answers(self, standing: Standing) -> bool:
         """Is this what was asked for? A planner whose time is over goes on only if it asks itself."""
-        mine = self._waits and standing.enquirer == self._enquirer
+        mine = self.waits and standing.enquirer == self._enquirer
         if mine:
-            self.fenced = self._asks = self._waits = False
+            self.fenced = self._asks = self.waits = False
         return mine
 
     def resume(self, resumption: Resumption) -> None:
@@ -74,7 +73,7 @@ class Standings:
             self.fenced = True
         elif perception.kind == "restarted":
             versions: dict[str, int] = dict(perception.values)  # type: ignore[arg-type]  # pairs
-            asking = self._waits or self._resumption is not None or perception.subject == "damaged"
+            asking = self.waits or self._resumption is not None or perception.subject == "damaged"
             if asking or not _as_it_was(versions, issuer):
                 self.enquire()
             elif issuer.under_way:
