@@ -29,7 +29,7 @@ FUNCTIONS = {
     "serving": {
         "assert_": "ASSERT", "sit": "SIT", "succeed": "SUCCEED", "fail": "FAIL", "_ended_instance": "SUCCEED",
         "update": "UPDATE", "wait": "WAIT", "drain": "DRAIN", "renew": "RENEW", "wait_old": "WAITOLD",
-        "inhibit": "INHIBIT", "uninhibit": "UNINHIBIT", "disable": "DISABLE", "enable": "ENABLE",
+        "migrate": "MIGRATE", "inhibit": "INHIBIT", "uninhibit": "UNINHIBIT", "disable": "DISABLE", "enable": "ENABLE",
         "disabled": "DISABLE", "enabled": "ENABLE", "stub": "STUB", "report": "REPORT", "monitor": "ASSUMONITOR",
     },
     "store": {
@@ -38,7 +38,8 @@ FUNCTIONS = {
         "Store.inhibited": "INHIBIT", "Store.disabled": "DISABLE", "Store.gone": "ASSERT",
         "Store.complete": "ASSERT", "Store.quiescent": "WAIT", "Store.available": "SIT", "Store.above": "ASSERT",
         "Store.changed": "UPDATE", "Store.asserted": "ASSERT", "Store.queued": "DRAIN",
-        "Store.left_queue": "DRAIN", "Store.ended": "SUCCEED", "Store.abandoned": "N9", "Store.entered": "SIT",
+        "Store.left_queue": "DRAIN", "Store.abandoned_in_queue": "MIGRATE", "Store.migrated": "MIGRATE",
+        "Store.ended": "SUCCEED", "Store.abandoned": "N9", "Store.entered": "SIT",
         "Store.left": "SIT", "Store.stamped": "SIT", "Store.without": "ASSERT", "Store.inhibit": "INHIBIT",
         "Store.uninhibit": "UNINHIBIT", "Store.drain": "DRAIN", "Store.drain_ended": "DRAIN",
         "Store.released": "UNINHIBIT", "Store.root_ended": "owners", "Store._fated": "DRAIN",

@@ -70,6 +70,24 @@ def test_a_kill_without_a_drain_is_withheld_with_the_steps_that_show_it() -> Non
     assert found.counterexample
 
 
+def test_in_mode_wait_what_may_be_overtaken_is_sent_and_what_waits_for_itself_is_not() -> None:
+    both = replace(
+        SECOND,
+        definitions=SECOND.definitions
+        + "\nP[4] = SIT[work]<k> :; (~(REASSERT[part] : SUCCEED[work, k]) : FAIL[work, k])",
+        changes=(Change(situation="work", base=1), Change(situation="part", base=1)),
+        kills=(1, 2),
+        adds=(3, 4),
+        mode="wait",
+    )
+    for changes, sent in ((both.changes, True), (both.changes[::-1], False)):
+        made = Gate(mode="wait")
+        made.examine(FIRST)
+        found = made.examine(replace(both, changes=changes))
+        assert found.holds == sent, found
+    assert found.why == "from here on the script cannot end"
+
+
 def test_what_was_not_applied_is_forgotten() -> None:
     made = gate(FIRST)
     made.examine(SECOND)

@@ -75,7 +75,7 @@ class Gate:
         while seen != (now := (self._standing, self._standing.changes)):  # what stands may change meanwhile
             seen = now
             verdict = yield from self.verifier.looking(self._standing, new, surgery(adaptation))
-        if self._patient:
+        if self._patient and verdict.cycle:  # overtaken again and again, but not for ever by itself
             verdict = replace(verdict, bounded=True)
         if not verdict.holds:
             return self._withhold(adaptation, verdict)
