@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import partial
 from typing import Any
 
@@ -35,8 +35,8 @@ def made(seed: int = 1, *, weather: Weather = CLEAN, faults: tuple[Fault, ...] =
 def is_sound(loop: LinkedLoop) -> bool:
     assert loop.violations == []
     assert loop.host.world is not None
-    kits = loop.host.world.report()["kits"]
-    assert kits["completed"] == TRAYS
+    report: Mapping[str, Any] = loop.host.world.report()
+    assert report["kits"]["completed"] == TRAYS
     committed = loop.reactor.journal.state.committed
     segments = {s.name: s.version for s in loop.planner.model}
     return loop.planner.ideal and segments.items() <= committed.versions.items()

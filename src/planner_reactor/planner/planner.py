@@ -199,7 +199,7 @@ class Planner:
             self._gate.meet(environment)
 
     def statistics(self) -> Mapping[str, int]:
-        """Counts: refinements, situations taken over, adaptations by outcome, relaxations by cause, perceptions by kind."""
+        """Counts: refinements, situations taken over, adaptations, relaxations by cause, perceptions by kind."""
         return {**self._counts, "refinements": self._reducer.memory.worked_out}
 
     # ------------------------------------------------------------------------------------------- one step
