@@ -10,8 +10,9 @@ import argparse
 import json
 import statistics
 import time
-from typing import Any
 
+from planner_reactor.analysis.adaptations import Verdict
+from planner_reactor.analysis.looking import Looking, finish
 from planner_reactor.experiments.loop import Loop
 from planner_reactor.experiments.runs import Run, perform, the_domain
 from planner_reactor.link.messages import Adaptation
@@ -46,18 +47,19 @@ def verifying(runs: int, *, forgetful: bool) -> list[tuple[float, int]]:
     def watch(loop: Loop) -> None:
         gate = loop.planner._gate
         assert gate is not None
-        examine = gate.examine
+        examining = gate.examining
 
-        def timed(adaptation: Adaptation) -> Any:
+        def timed(adaptation: Adaptation) -> Looking[Verdict]:
             if forgetful:
-                gate.verifier.seen.clear()
+                gate.verifier.forget()
             began = time.perf_counter()
-            verdict = examine(adaptation)
+            verdict = finish(examining(adaptation))
             taken.append(((time.perf_counter() - began) * 1e3, verdict.states))
             assert verdict.holds
+            yield from ()
             return verdict
 
-        gate.examine = timed  # type: ignore[method-assign]
+        gate.examining = timed  # type: ignore[method-assign]
 
     for seed in range(runs):
         ran = perform(Run(seed=seed, products=5), watch=watch)
