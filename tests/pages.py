@@ -17,6 +17,7 @@ from planner_reactor.cli.application import NAME
 from planner_reactor.cli.later import LATER
 from planner_reactor.logic import itl_syntax
 from planner_reactor.rs import grammar, states
+from planner_reactor.simulation.counters import ROWS
 from tests.laws.telling import laws, non_laws
 from tests.mutants.telling import mutants_table
 from tests.transcripts import examples
@@ -145,7 +146,16 @@ def _property_words() -> str:
     return "\n".join([*lines, ""])
 
 
+def _counters() -> str:
+    """What a campaign of chaos has to bring about, by rows of the fault table."""
+    lines = ["| row | what happens | counter |", "|---|---|---|"]
+    for counter, (row, text) in ROWS.items():
+        lines.append(f"| {row or '–'} | {text} | {counter.lstrip('0123456789 ')} |")
+    return "\n".join([*lines, ""])
+
+
 MADE: Mapping[str, Callable[[], str]] = {
+    "counters": _counters,
     "examples": _examples,
     "grammar": lambda: _indented_in(grammar),
     "imports": _imports,

@@ -16,9 +16,10 @@ from planner_reactor.simulation.running import run
 from planner_reactor.simulation.shrinking import shrunk
 
 SECONDS = 900.0
+pytestmark = pytest.mark.timeout(60)
 
 
-@pytest.mark.parametrize("seed", range(1, 21))
+@pytest.mark.parametrize("seed", range(1, 17))
 def test_whatever_strikes_no_law_is_broken(seed: int) -> None:
     result = run(drawn("workshop", seed, SECONDS))
     assert result.violations == ()

@@ -16,7 +16,6 @@ from pathlib import Path
 
 import msgspec
 
-import planner_reactor
 from planner_reactor.simulation.cases import Case, drawn
 from planner_reactor.simulation.counters import ROWS, missing
 from planner_reactor.simulation.keeping import written
@@ -40,7 +39,7 @@ class Line(msgspec.Struct, frozen=True):
 
 def sources() -> str:
     """A digest of everything that is simulated, and of the simulation."""
-    root = Path(planner_reactor.__file__).parent
+    root = Path(__file__).parents[1]
     digest = hashlib.sha256()
     for file in sorted(root.rglob("*.py")):
         digest.update(file.read_bytes())

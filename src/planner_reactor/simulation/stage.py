@@ -199,7 +199,7 @@ class Stage:
             return
         if self.planner is not None and (adaptation := self.brain.improvise()) is not None:
             self.send(adaptation)
-        self.scheduler.call_after(self.draw.uniform(2.0, 28.0), self._think)
+        self.scheduler.call_after(self.draw.uniform(2.0, 24.0), self._think)
 
     def send(self, adaptation: object) -> None:
         if self.planner is not None and adaptation is not None:

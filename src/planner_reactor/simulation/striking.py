@@ -96,7 +96,7 @@ def _stale(stage: Stage, fault: Fault) -> None:
     if stage.side is None or stage.side.session is None or stage.side.reactor.halted:
         return
     epoch = stage.side.reactor.journal.state.committed.epoch
-    if epoch > 1:
+    if epoch:
         late = Adaptation(id=10**6, epoch=epoch - 1, definitions=f"P[{10**6}] = Delay[1] :; Beat", adds=(10**6,))
         stage.side.reactor.receive(late)
         stage.rows["7 adaptations of a planner whose time is over"] += 1
