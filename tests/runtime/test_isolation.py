@@ -1,4 +1,4 @@
-"""One process hangs, one raises, a loop takes no time: each fails within its limit, and nobody else is a moment late."""
+"""One process hangs, one raises, one takes no time: each fails within its limit, and nobody else is a moment late."""
 
 from __future__ import annotations
 

@@ -87,14 +87,9 @@ class Reactor:
             "absent_guard": self._absent_guard,
         }
         built_in = BuiltIns(
-            scheduler,
-            self.host.assumptions,
-            notice=self.notice,
-            read=self.assumption_sensed,
-            reached=self._stub_reached,
-            told=self._information,
-            commit=self._commit,
-        )
+            scheduler, self.host.assumptions, notice=self.notice, read=self.assumption_sensed,
+            reached=self._stub_reached, told=self._information, commit=self._commit,
+        )  # fmt: skip
         self.situations = built_in.situations
         self.executer = Executer(
             EQUATION_3,
@@ -383,8 +378,8 @@ class Reactor:
         return self._life.restoring
 
     def commands(self) -> int:
-        """How many basic processes run."""
-        return self.executer.statistics().basic_running
+        """How many basic processes run, but for those that end with the present step."""
+        return 0 if self.executer.killing else self.executer.statistics().basic_running
 
     def over_budget(self) -> str | None:
         live, most = self.executer.processes_live, self.budgets.processes

@@ -118,9 +118,10 @@ class Executer:
                 self._running = False
 
     def kill(self, root: Root) -> None:
-        """Abort a root, as soon as the present step is over."""
-        self._killed.add(root)
-        self._kernel.kill_root(root)
+        """Abort a root, as soon as the present step is over; without effect on one that has ended."""
+        if root.outcome is None:
+            self._killed.add(root)
+            self._kernel.kill_root(root)
 
     def load(self, schemas: Iterable[Schema]) -> None:
         """Add definitions while everything runs: all of them, or none if two clauses have the same head."""
@@ -156,6 +157,11 @@ class Executer:
     def processes_live(self) -> int:
         """Strands alive: one figure of the statistics, for those who ask after every step."""
         return self._kernel.live
+
+    @property
+    def killing(self) -> bool:
+        """Is a root still to be aborted, as soon as the present step is over?"""
+        return bool(self._killed)
 
     @property
     def sites(self) -> tuple[Hashable, ...]:
