@@ -313,6 +313,6 @@ def read_all(process: str, values: dict[Unknown, Any]) -> tuple[tuple[State, Wor
 def test_a_reading_that_takes_every_question_for_answered_is_caught(monkeypatch: pytest.MonkeyPatch) -> None:
     """The property can fail: with a defect seeded in `decide`, some concrete step is no instance any more."""
     monkeypatch.setattr("planner_reactor.rs.unknowns.decide", lambda constraint: True)
+    every = test_every_concrete_step_is_an_instance_of_a_symbolic_one
     with pytest.raises(AssertionError):
-        for seed in range(12):
-            test_every_concrete_step_is_an_instance_of_a_symbolic_one(seed)
+        list(map(every, range(12)))
