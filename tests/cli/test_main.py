@@ -51,8 +51,6 @@ def test_what_belongs_to_later_versions_says_so(call: Call, name: str) -> None:
         ("kit", "--cell", "physics"),
         ("kit", "--cell", "camera"),
         ("kit", "--planner", "process"),
-        ("kit", "--mode", "wait"),
-        ("kit", "--mode", "versions"),
         ("kit", "--trace", "out.mcap"),
         ("experiment", "x", "--out", "out", "--scheduler", "here:1"),
     ],

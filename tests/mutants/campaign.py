@@ -17,6 +17,9 @@ from tests.mutants.running import ROOT
 
 OUT = ROOT / "out/mutants.jsonl"
 TABLE = ROOT / "tests/mutants/table.json"
+KILLERS = ROOT / "tests/mutants/killers.json"
+"""Which test found a mutant in the last campaign: it is tried first."""
+
 EQUIVALENT = ROOT / "tests/mutants/equivalent.toml"
 
 RULE_TESTS = (
@@ -143,6 +146,31 @@ def summary(results: Iterable[Result]) -> str:
 
 
 def write_table(results: Iterable[Result]) -> None:
-    """Ship what the campaign says of each rule."""
-    table = by_rule(results)
-    TABLE.write_text(json.dumps(dict(sorted(table.items())), indent=1) + "\n", encoding="utf-8")
+    """Ship what the campaign says of each rule, and which test found each rule that was taken away."""
+    found = list(results)
+    TABLE.write_text(json.dumps(dict(sorted(by_rule(found).items())), indent=1) + "\n", encoding="utf-8")
+    by = {result["key"]: result["by"] for result in found}
+    killers = {mutant.key: by.get(mutant.key, "") for mutant in removals().values()}
+    KILLERS.write_text(json.dumps(killers, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
+
+
+REMOVALS = ("drop case", "drop entry", "drop item", "old store", "drop statement", "drop if", "drop condition",
+            "negate condition", "negate result", "take branch", "swap comparison", "drop operand")  # fmt: skip
+"""Ways to take a rule away, the most thorough first."""
+
+HARMLESS = {"SEQ", "terms", "begin", "scopes"}
+"""Not rules: what terms are."""
+
+
+@lru_cache
+def removals() -> Mapping[str, Mutant]:
+    """For each rule the mutant that takes most of it away."""
+    known = equivalents()
+    found: dict[str, tuple[int, Mutant]] = {}
+    for mutant in mutants():
+        way = next((n for n, w in enumerate(REMOVALS) if mutant.mutation.operator.startswith(w)), None)
+        if way is not None and mutant.key not in known and mutant.rule not in HARMLESS:
+            found.setdefault(mutant.rule, (way, mutant))
+            if way < found[mutant.rule][0]:
+                found[mutant.rule] = (way, mutant)
+    return {rule: mutant for rule, (_, mutant) in sorted(found.items())}

@@ -7,29 +7,11 @@ import json
 
 import pytest
 
-from tests.mutants.campaign import RULE_TESTS, TABLE, Mutant, equivalents, mutants, score
+from tests.mutants.campaign import KILLERS, RULE_TESTS, TABLE, equivalents, mutants, removals, score
 from tests.mutants.operators import mutations
 from tests.mutants.running import ROOT, Code, judged
 
-REMOVALS = ("drop case", "drop entry", "drop item", "old store", "drop statement", "drop if", "drop condition",
-            "negate condition", "negate result", "take branch", "swap comparison", "drop operand")  # fmt: skip
-"""Ways to take a rule away, the most thorough first."""
-
-HARMLESS = {"SEQ", "terms", "begin", "scopes"}
-"""Not rules: what terms are."""
-
-
-def removals() -> dict[str, Mutant]:
-    """For each rule the mutant that takes most of it away."""
-    known = equivalents()
-    found: dict[str, tuple[int, Mutant]] = {}
-    for mutant in mutants():
-        way = next((n for n, w in enumerate(REMOVALS) if mutant.mutation.operator.startswith(w)), None)
-        if way is not None and mutant.key not in known and mutant.rule not in HARMLESS:
-            found.setdefault(mutant.rule, (way, mutant))
-            if way < found[mutant.rule][0]:
-                found[mutant.rule] = (way, mutant)
-    return {rule: mutant for rule, (_, mutant) in sorted(found.items())}
+KILLERS_KNOWN: dict[str, str] = json.loads(KILLERS.read_text(encoding="utf-8")) if KILLERS.exists() else {}
 
 
 @pytest.fixture(scope="module")
@@ -42,7 +24,7 @@ def code() -> Code:
 @pytest.mark.parametrize("rule", removals())
 def test_a_rule_taken_away_makes_a_test_fail(code: Code, rule: str) -> None:
     mutant = removals()[rule]
-    verdict = judged(code, mutant.name, mutant.tree(), RULE_TESTS)
+    verdict = judged(code, mutant.name, mutant.tree(), RULE_TESTS, first=KILLERS_KNOWN.get(mutant.key, ""))
     assert verdict.fate == "killed", mutant.key
     assert verdict.by
 

@@ -64,7 +64,7 @@ class Monitors:
 
             def check() -> None:
                 self._timers[strand] = self._scheduler.call_after(period / 1000, check)
-                self._read(assumption, sense(), returns=reports)
+                self._read(assumption, sense(), returns=reports, fails=not reports)
 
             # a step may not change the world it belongs to: the first reading is an event of its own
             self._timers[strand] = self._scheduler.call_after(0.0, check)

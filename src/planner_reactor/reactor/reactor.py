@@ -353,9 +353,11 @@ class Reactor:
     def resting_on(self, assumption: str) -> tuple[str, ...]:
         return self.assumptions.resting_on(assumption)
 
-    def assumption_sensed(self, assumption: str, sensed: Sensed, *, returns: bool = True) -> None:
-        """A reading of an assumption; `returns`: may it say that a failed one holds again?"""
-        self.readings.read(assumption, sensed, returns=returns)
+    def assumption_sensed(
+        self, assumption: str, sensed: Sensed, *, returns: bool = True, fails: bool = True
+    ) -> None:
+        """A reading of an assumption, which may say that a failed one `returns`, or that it `fails`."""
+        self.readings.read(assumption, sensed, returns=returns, fails=fails)
 
     def _assumption_told(self, kind: PerceptionKind, assumption: str, cause: str = "") -> None:
         self.trace.record(kind, assumption=assumption, **({"cause": cause} if cause else {}))

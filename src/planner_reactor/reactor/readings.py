@@ -77,8 +77,8 @@ class Readings:
             mind = self._minds[assumption] = Mind(caution, assumption in self._assumptions.failed)
         return mind
 
-    def read(self, assumption: str, sensed: Sensed, *, returns: bool) -> None:
-        """One reading; `returns`: may it say that a failed one holds again?"""
+    def read(self, assumption: str, sensed: Sensed, *, returns: bool, fails: bool = True) -> None:
+        """One reading; may it say that a failed one holds again (`returns`), or that it `fails`?"""
         mind = self.mind(assumption)
         if assumption not in self._host.assumptions:
             self._doubt(assumption, mind, "unsensed")
@@ -94,6 +94,8 @@ class Readings:
                 self._holds(assumption, mind)
             return
         mind.held_since = None
+        if not fails:
+            return
         self._failing[assumption] = self._failing.get(assumption, 0) + 1
         if assumption in self._assumptions.failed or mind.recent.count(False) >= mind.caution.fails:
             self._fails(assumption, mind)
