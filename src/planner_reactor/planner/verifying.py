@@ -100,7 +100,7 @@ class Gate:
     # ------------------------------------------------------------------------------------- held until the verdict
 
     def look(self, step: Step) -> tuple[Step, Verdicts] | None:
-        """Look at what a step issues; the step with the verdicts, or None if that takes more than one step: it is held."""
+        """Look at what a step issues: the step with the verdicts, or None if it is held, as that takes longer."""
         self._held = step, self._all_of(step.adaptations)
         return self.look_on()
 
