@@ -1,8 +1,8 @@
-"""The strongly connected parts of a graph of states: where a run that never ends stays at last."""
+"""Graphs of states: from where something can be reached, and the parts in which a run that never ends stays at last."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import Protocol
 
 
@@ -11,6 +11,22 @@ class Onward(Protocol):
 
     @property
     def after(self) -> int: ...
+
+
+def reaching(successors: Iterable[Iterable[int]], goal: Iterable[int]) -> set[int]:
+    """The states from which one of `goal` can be reached; `successors` are those of state 0, 1, 2, …"""
+    before: dict[int, list[int]] = {}
+    for n, after in enumerate(successors):
+        for state in after:
+            before.setdefault(state, []).append(n)
+    found = set(goal)
+    waiting = list(found)
+    while waiting:
+        for n in before.get(waiting.pop(), ()):
+            if n not in found:
+                found.add(n)
+                waiting.append(n)
+    return found
 
 
 def components(moves: Sequence[Sequence[Onward]], within: set[int]) -> list[frozenset[int]]:

@@ -14,6 +14,7 @@ from typing import Any
 import msgspec
 from msgspec.structs import replace
 
+from planner_reactor.analysis.components import reaching
 from planner_reactor.rs.configurations import Config, Label, World
 from planner_reactor.rs.leaves import Step, elapsed, slack, steps, window
 from planner_reactor.rs.states import Ended, InstanceNumber, Leaf
@@ -59,18 +60,9 @@ class Exploration(msgspec.Struct, frozen=True):
 
     def trapped(self, goal: Callable[[Config], bool]) -> int | None:
         """The first state from which no state with the goal can be reached any more, or None."""
-        before: dict[int, list[int]] = {}
-        for n, moves in enumerate(self.moves):
-            for _, after in moves:
-                before.setdefault(after, []).append(n)
-        reaching = {n for n, state in enumerate(self.states) if goal(state)}
-        waiting = list(reaching)
-        while waiting:
-            for n in before.get(waiting.pop(), ()):
-                if n not in reaching:
-                    reaching.add(n)
-                    waiting.append(n)
-        return next((n for n in range(len(self.states)) if n not in reaching), None)
+        onward = ([after for _, after in moves] for moves in self.moves)
+        found = reaching(onward, (n for n, state in enumerate(self.states) if goal(state)))
+        return next((n for n in range(len(self.states)) if n not in found), None)
 
 
 def explore(

@@ -22,7 +22,7 @@ from typing import Literal, TypeAlias
 
 import msgspec
 
-from planner_reactor.analysis.components import components
+from planner_reactor.analysis.components import components, reaching
 from planner_reactor.analysis.explore import canonical
 from planner_reactor.analysis.looking import Looking, finish
 from planner_reactor.errors import BudgetError
@@ -252,28 +252,14 @@ class _Search:
     def never_done(self) -> Counterexample | None:
         """A run on which the script does not end: one that cannot, or one that goes round fairly."""
         goal = [n for n, state in enumerate(self.states) if self.done(state)]
-        reaching = self._reaching(goal)
-        trapped = next((n for n in range(len(self.states)) if n not in reaching), None)
+        ending = reaching(([move.after for move in moves] for moves in self.moves), goal)
+        trapped = next((n for n in range(len(self.states)) if n not in ending), None)
         waiting = {n for n, state in enumerate(self.states) if not self.done(state)}
         lasso = None if self.protocol.patient else self._lasso(waiting)
         stuck = None
         if trapped is not None:
             stuck = Counterexample("bounded", "from here on the script cannot end", self.path(trapped))
         return stuck or lasso
-
-    def _reaching(self, goal: Iterable[int]) -> set[int]:
-        before: dict[int, list[int]] = {}
-        for n, moves in enumerate(self.moves):
-            for move in moves:
-                before.setdefault(move.after, []).append(n)
-        found = set(goal)
-        waiting = list(found)
-        while waiting:
-            for n in before.get(waiting.pop(), ()):
-                if n not in found:
-                    found.add(n)
-                    waiting.append(n)
-        return found
 
     def _lasso(self, within: set[int]) -> Counterexample | None:
         """The shortest of the weakly fair lassos, one for each component."""

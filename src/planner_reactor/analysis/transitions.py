@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterable, Sequence
 from typing import TypeAlias, overload
 
 from planner_reactor.analysis.cells import Entangled
+from planner_reactor.analysis.components import reaching
 from planner_reactor.analysis.networks import Network, Vector, networked, whole
 from planner_reactor.errors import BudgetError
 from planner_reactor.rs.configurations import Config, Label, World
@@ -109,23 +110,12 @@ class Transitions:
 
     def reaching(self, goal: Iterable[int]) -> set[int]:
         """The states from which one of these can be reached."""
-        before: dict[int, list[int]] = {}
-        for n, moves in enumerate(self.moves):
-            for _, after in moves:
-                before.setdefault(after, []).append(n)
-        found = set(goal)
-        waiting = list(found)
-        while waiting:
-            for n in before.get(waiting.pop(), ()):
-                if n not in found:
-                    found.add(n)
-                    waiting.append(n)
-        return found
+        return reaching(([after for _, after in moves] for moves in self.moves), goal)
 
     def trapped(self, goal: Callable[[Config], bool]) -> int | None:
         """The first state from which no state with the goal can be reached any more, or None."""
-        reaching = self.reaching(n for n, state in enumerate(self.states) if goal(state))
-        return next((n for n in range(len(self)) if n not in reaching), None)
+        found = self.reaching(n for n, state in enumerate(self.states) if goal(state))
+        return next((n for n in range(len(self)) if n not in found), None)
 
 
 def build(config: Config, world: World, *, limit: int = LIMIT) -> Transitions:
