@@ -16,7 +16,6 @@ from planner_reactor.simulation.running import run
 from planner_reactor.simulation.shrinking import shrunk
 
 SECONDS = 900.0
-pytestmark = pytest.mark.timeout(60)
 
 
 @pytest.mark.parametrize("seed", range(1, 17))

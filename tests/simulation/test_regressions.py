@@ -10,7 +10,6 @@ from planner_reactor.simulation.cases import Case
 from planner_reactor.simulation.keeping import read_cases, written
 from planner_reactor.simulation.running import run
 
-pytestmark = pytest.mark.timeout(60)
 CASES = read_cases(Path(__file__).with_name("regressions.toml").read_text())
 
 
