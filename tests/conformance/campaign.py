@@ -90,8 +90,8 @@ def summary(batches: Iterable[Batch]) -> str:
 
 def main(arguments: list[str]) -> int:
     parser = argparse.ArgumentParser(prog="python -m tests.conformance", description=__doc__)
-    parser.add_argument("--programs", type=int, default=1_000_000, help="how many in all [default: 1000000]")
-    parser.add_argument("--first", type=int, default=0, help="the first seed, where several share the work")
+    parser.add_argument("--until", type=int, default=1_000_000, metavar="SEED", help="the seed to stop before [default: 1000000]")
+    parser.add_argument("--first", type=int, default=0, help="the first seed, where several share the work [default: 0]")
     parser.add_argument("--results", type=Path, default=RESULTS, help=f"where they stand [default: {RESULTS}]")
     parser.add_argument("--summary", action="store_true", help="only say what was done so far")
     given = parser.parse_args(arguments)
@@ -102,11 +102,11 @@ def main(arguments: list[str]) -> int:
         coverage = Coverage()
         first = max((b.first + b.programs for b in done if b.first >= given.first), default=given.first)
         with given.results.open("ab") as file:
-            for start in range(first, given.programs, BATCH):
+            for start in range(first, given.until, BATCH):
                 done.append(batch(start, coverage, digest))
                 file.write(msgspec.json.encode(done[-1]) + b"\n")
                 file.flush()
-                print(f"{start + BATCH} of {given.programs}: {len(done[-1].disagreements)} disagreements", flush=True)
+                print(f"{start + BATCH} of {given.until}: {len(done[-1].disagreements)} disagreements", flush=True)
         coverage.close()
     for version in dict.fromkeys(b.sources for b in done):
         print(f"sources {version}{' (these)' if version == digest else ''}:")

@@ -15,6 +15,7 @@ import msgspec
 from msgspec.structs import replace
 
 from planner_reactor.analysis.components import reaching
+from planner_reactor.analysis.discovery import Discovery, Origins, path
 from planner_reactor.rs.configurations import Config, Label, World
 from planner_reactor.rs.leaves import Step, elapsed, slack, steps, window
 from planner_reactor.rs.states import Ended, InstanceNumber, Leaf
@@ -40,7 +41,7 @@ class Exploration(msgspec.Struct, frozen=True):
     moves: tuple[tuple[tuple[Label, int], ...], ...]
     violations: tuple[Violation, ...]
     complete: bool
-    came_from: Mapping[int, tuple[int, Label]]
+    origins: Origins
 
     def __repr__(self) -> str:
         return f"Exploration({len(self.states)} states, complete={self.complete}, {list(self.violations)})"
@@ -52,11 +53,7 @@ class Exploration(msgspec.Struct, frozen=True):
 
     def path(self, state: int) -> tuple[Label, ...]:
         """The labels of a shortest way from the first state."""
-        labels: list[Label] = []
-        while state in self.came_from:
-            state, label = self.came_from[state]
-            labels.append(label)
-        return tuple(reversed(labels))
+        return path(self.origins, state)
 
     def trapped(self, goal: Callable[[Config], bool]) -> int | None:
         """The first state from which no state with the goal can be reached any more, or None."""
@@ -74,27 +71,21 @@ def explore(
     stop_at_violation: bool = True,
 ) -> Exploration:
     """Explore from `start`, asking every law at every step."""
-    states = [canonical(start)]
-    numbers = {states[0]: 0}
-    came_from: dict[int, tuple[int, Label]] = {}
+    met = Discovery(canonical(start))
     moves: list[tuple[tuple[Label, int], ...]] = []
     violations: list[Violation] = []
-    for here, state in enumerate(states):  # grows while it is read
+    for here, state in enumerate(met.states):  # grows while it is read
         found = []
         for step in successors(state, world):
-            after = canonical(step.after)
-            if (number := numbers.setdefault(after, len(states))) == len(states):
-                states.append(after)
-                came_from[number] = (here, step.label)
-            found.append((step.label, number))
+            found.append((step.label, met.number(canonical(step.after), here, step.label)))
             broken = [name for name, law in (laws or {}).items() if not law(state, step)]
             if broken:
-                so_far = Exploration((), (), (), False, came_from).path(here)
+                so_far = path(met.origins, here)
                 violations += [Violation(name, (*so_far, step.label)) for name in broken]
         moves.append(tuple(found))
-        if (violations and stop_at_violation) or len(states) > limit:
-            return Exploration(tuple(states), tuple(moves), tuple(violations), False, came_from)
-    return Exploration(tuple(states), tuple(moves), tuple(violations), True, came_from)
+        if (violations and stop_at_violation) or len(met) > limit:
+            return Exploration(tuple(met.states), tuple(moves), tuple(violations), False, met.origins)
+    return Exploration(tuple(met.states), tuple(moves), tuple(violations), True, met.origins)
 
 
 def successors(config: Config, world: World) -> Iterator[Step]:

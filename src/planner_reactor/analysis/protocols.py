@@ -23,6 +23,7 @@ from typing import Literal, TypeAlias
 import msgspec
 
 from planner_reactor.analysis.components import components, reaching
+from planner_reactor.analysis.discovery import Discovery, path
 from planner_reactor.analysis.explore import canonical
 from planner_reactor.analysis.looking import Looking, finish
 from planner_reactor.errors import BudgetError
@@ -130,23 +131,21 @@ class _Search:
         self.protocol = protocol
         self.world = world
         config = started(protocol.reactor, world, config=Config(store=protocol.store))
-        self.states = [canonical(started(protocol.script, world, config=config))]
+        self.met = Discovery(canonical(started(protocol.script, world, config=config)))
+        self.states = self.met.states
         self.moves: list[tuple[Move, ...]] = []
-        self.came_from: list[tuple[int, Label] | None] = [None]
         self.broken: dict[Law, Counterexample] = {}
 
     def running(self, limit: int) -> Looking[None]:
         """Reach every state up to the end of the script, and as long as it may be inconsistent after it."""
-        numbers = {self.states[0]: 0}
         for here, state in enumerate(self.states):  # grows while it is read
             found = []
             for label, after, actor in self._successors(state):
-                number = numbers.setdefault(after, len(self.states))
-                if number == len(self.states):
-                    if number >= limit:
-                        raise BudgetError("states", f"more than {limit} states of reactor and script together")
-                    self.states.append(after)
-                    self.came_from.append((here, label))
+                new = len(self.met)
+                number = self.met.number(after, here, label)
+                if number >= limit:
+                    raise BudgetError("states", f"more than {limit} states of reactor and script together")
+                if number == new:
                     for law, why in self._breaches(after):
                         if law not in self.broken:
                             self.broken[law] = Counterexample(law, why, self.path(number))
@@ -168,11 +167,7 @@ class _Search:
 
     def path(self, state: int) -> tuple[Label, ...]:
         """The labels of a shortest way to a state."""
-        labels: list[Label] = []
-        while (step := self.came_from[state]) is not None:
-            state, label = step
-            labels.append(label)
-        return tuple(reversed(labels))
+        return path(self.met.origins, state)
 
     def done(self, state: Config) -> bool:
         return isinstance(state.root(SCRIPT), Ended)

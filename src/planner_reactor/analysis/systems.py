@@ -11,6 +11,7 @@ from collections.abc import Iterable, Sequence
 
 import msgspec
 
+from planner_reactor.analysis.discovery import Discovery, Origins, path
 from planner_reactor.analysis.explore import canonical, successors
 from planner_reactor.analysis.observing import Atom, seen, seen_at_rest
 from planner_reactor.rs.configurations import Config, Label, World
@@ -42,16 +43,12 @@ class System(msgspec.Struct, frozen=True):
     states: Sequence[Config]
     moves: Sequence[tuple[Move, ...]]
     idle: Sequence[int]  # what is seen where nothing happens
-    came_from: Sequence[tuple[int, Label] | None]
+    origins: Origins
     complete: bool
 
     def path(self, state: int) -> tuple[Label, ...]:
         """The labels of a shortest way from the first state."""
-        labels: list[Label] = []
-        while (step := self.came_from[state]) is not None:
-            state, label = step
-            labels.append(label)
-        return tuple(reversed(labels))
+        return path(self.origins, state)
 
     def leaving(self, state: int) -> Iterable[Move]:
         """The moves of a state; where nothing is left to do, the idle one."""
@@ -72,22 +69,17 @@ def over(state: Config) -> bool:
 
 def build(start: Config, world: World, atoms: Sequence[Atom] = (), *, limit: int = LIMIT) -> System:
     """The system of a configuration, up to `limit` states."""
-    states = [canonical(start)]
-    numbers = {states[0]: 0}
-    came_from: list[tuple[int, Label] | None] = [None]
+    met = Discovery(canonical(start))
     moves: list[tuple[Move, ...]] = []
     idle: list[int] = []
-    for here, state in enumerate(states):  # grows while it is read
+    for here, state in enumerate(met.states):  # grows while it is read
         found = []
         for step in successors(state, world):
-            after = canonical(step.after)
-            if (number := numbers.setdefault(after, len(states))) == len(states):
-                states.append(after)
-                came_from.append((here, step.label))
+            number = met.number(canonical(step.after), here, step.label)
             urgent = step.urgent and step.label[0] != "TIME"
             found.append(Move(step.label, number, urgent, seen(atoms, state, step)))
         moves.append(tuple(found))
         idle.append(0 if found else seen_at_rest(atoms, state))
-        if len(states) > limit:
-            return System(tuple(atoms), states, moves, idle, came_from, False)
-    return System(tuple(atoms), states, moves, idle, came_from, True)
+        if len(met) > limit:
+            return System(tuple(atoms), met.states, moves, idle, met.origins, False)
+    return System(tuple(atoms), met.states, moves, idle, met.origins, True)

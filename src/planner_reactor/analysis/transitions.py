@@ -13,6 +13,7 @@ from typing import TypeAlias, overload
 
 from planner_reactor.analysis.cells import Entangled
 from planner_reactor.analysis.components import reaching
+from planner_reactor.analysis.discovery import Discovery, Origins, path
 from planner_reactor.analysis.networks import Network, Vector, networked, whole
 from planner_reactor.errors import BudgetError
 from planner_reactor.rs.configurations import Config, Label, World
@@ -49,8 +50,8 @@ class Configurations(Sequence[Config]):
 class Transitions:
     """States 0, 1, … in the order of a shortest way to them; 0 is the first.
 
-    `moves[i]` are the (label, next state) pairs of state i, `states[i]` is its configuration, `came_from[i]` the state
-    and the label by which it was found. `urgent[i]` has a bit for each move that does not let time pass before it.
+    `moves[i]` are the (label, next state) pairs of state i, `states[i]` is its configuration, `origins[i]` the state
+    and the label by which it was met. `urgent[i]` has a bit for each move that does not let time pass before it.
     """
 
     complete = True
@@ -61,14 +62,14 @@ class Transitions:
         vectors: Sequence[Vector],
         moves: Sequence[tuple[Move, ...]],
         urgent: Sequence[int],
-        came_from: Sequence[tuple[int, Label] | None],
+        origins: Origins,
     ) -> None:
         self.network = network
         self.vectors = vectors
         self.states: Sequence[Config] = Configurations(network, vectors)
         self.moves = moves
         self.urgent = urgent
-        self.came_from = came_from
+        self.origins = origins
 
     def __len__(self) -> int:
         return len(self.moves)
@@ -102,11 +103,7 @@ class Transitions:
 
     def path(self, state: int) -> tuple[Label, ...]:
         """The labels of a shortest way from the first state."""
-        labels: list[Label] = []
-        while (step := self.came_from[state]) is not None:
-            state, label = step
-            labels.append(label)
-        return tuple(reversed(labels))
+        return path(self.origins, state)
 
     def reaching(self, goal: Iterable[int]) -> set[int]:
         """The states from which one of these can be reached."""
@@ -128,22 +125,17 @@ def build(config: Config, world: World, *, limit: int = LIMIT) -> Transitions:
 
 def built(network: Network, *, limit: int = LIMIT) -> Transitions:
     """The transition system of a network. Raises `BudgetError` above `limit` states, or `Entangled`."""
-    vectors = [network.start]
-    numbers = {network.start: 0}
-    came_from: list[tuple[int, Label] | None] = [None]
+    met = Discovery(network.start)
     moves: list[tuple[Move, ...]] = []
     urgent: list[int] = []
-    for here, vector in enumerate(vectors):  # grows while it is read
+    for here, vector in enumerate(met.states):  # grows while it is read
         found: list[Move] = []
         hurries = 0
         for label, after, in_a_hurry in network.steps(vector):
-            if (number := numbers.setdefault(after, len(vectors))) == len(vectors):
-                if number >= limit:
-                    raise BudgetError("states", f"more than {limit} states")
-                vectors.append(after)
-                came_from.append((here, label))
+            if (number := met.number(after, here, label)) >= limit:
+                raise BudgetError("states", f"more than {limit} states")
             hurries |= in_a_hurry << len(found)
             found.append((label, number))
         moves.append(tuple(found))
         urgent.append(hurries)
-    return Transitions(network, vectors, moves, urgent, came_from)
+    return Transitions(network, met.states, moves, urgent, met.origins)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any, TypeAlias
 
@@ -49,10 +50,7 @@ def evolve(
     given = evolving.given_values(settings or ())
     with reserved_output():
         result = evolving.evolve(file, process, host=host, given=given, ports=ports, every=every, limit=limit)
-    if as_json:
-        print_json(result)
-    else:
-        _show(result["steps"], result["complete"])
+    _show(result, "steps", as_json)
 
 
 @command(
@@ -76,17 +74,18 @@ def limits(
     given = evolving.given_values(settings or ())
     with reserved_output():
         result = evolving.limits(file, process, sensors=sensors, host=host, given=given, ports=ports, limit=limit)
+    _show(result, "limits", as_json)
+
+
+def _show(result: Mapping[str, Any], key: str, as_json: bool) -> None:
     if as_json:
         print_json(result)
-    else:
-        _show(result["limits"], result["complete"])
-
-
-def _show(entries: list[dict[str, Any]], complete: bool) -> None:
+        return
+    entries = result[key]
     width = max((len(entry["condition"]) for entry in entries), default=0)
     for entry in entries:
         print(f"{entry['condition']:{min(width, 40)}}  ->  {entry['term']}")
     if not entries:
         print("nothing: it can take no step")
-    if not complete:
+    if not result["complete"]:
         say(CUT)
