@@ -90,8 +90,8 @@ def summary(batches: Iterable[Batch]) -> str:
 
 def main(arguments: list[str]) -> int:
     parser = argparse.ArgumentParser(prog="python -m tests.conformance", description=__doc__)
-    parser.add_argument("--first", type=int, default=0, metavar="SEED", help="where several share the work [default: 0]")
-    parser.add_argument("--until", type=int, default=1_000_000, metavar="SEED", help="stop before it [default: 1000000]")
+    parser.add_argument("--first", type=int, default=0, metavar="SEED", help="where several share it [default: 0]")
+    parser.add_argument("--until", type=int, default=1_000_000, metavar="SEED", help="stop before [default: 1000000]")
     parser.add_argument("--results", type=Path, default=RESULTS, help=f"where they stand [default: {RESULTS}]")
     parser.add_argument("--summary", action="store_true", help="only say what was done so far")
     given = parser.parse_args(arguments)
