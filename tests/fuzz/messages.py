@@ -15,7 +15,7 @@ from planner_reactor.link.session import Frame, Session
 from planner_reactor.reactor.journal import HEADER, framed
 from tests.fuzz.texts import ODD, rs, size
 from tests.reactor.driving import FIRST, SECOND
-from tests.reactor.test_journal import history, written
+from tests.reactor.journals import history, written
 
 JOURNAL = written(history(12))
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
+from collections.abc import Callable
 from types import FrameType
 from typing import Any
 
@@ -14,6 +15,7 @@ from planner_reactor.errors import InputError
 from planner_reactor.link.codec import decode
 from planner_reactor.link.messages import Adaptation
 from planner_reactor.link.session import Session
+from planner_reactor.logic.reader import check_domain
 from planner_reactor.reactor.journal import HEADER, Journal
 from planner_reactor.rs.checks import check_text
 from tests.fuzz.messages import framed_content, in_arrays
@@ -106,7 +108,16 @@ def test_what_is_nested_deeply_is_looked_at_once() -> None:
     assert calls[1] < 2.5 * calls[0]
 
 
-def calls_of(text: str) -> int:
+@pytest.mark.parametrize("line", ["executability: Before(x) @ i1 and ITL(i1, encompasses, Act);", "intervals i1;",
+                                  "effects: Exists z: After(x, y) @ i2 and ITL(Act, meets, i2);"])  # fmt: skip
+def test_what_is_said_again_and_again_of_intervals_is_gathered_once(line: str) -> None:
+    """Every condition of a schema asked all its constraints anew."""
+    schema = "atp_actionschema Act <x><y> intervals i1, i2; {} endactionschema"
+    calls = [calls_of(schema.format(f"{line}\n" * many), check_domain) for many in (100, 200)]
+    assert calls[1] < 2.5 * calls[0]
+
+
+def calls_of(text: str, check: Callable[[str], object] = check_text) -> int:
     """Calls of our own functions that a check of this text takes."""
     count = 0
 
@@ -115,7 +126,7 @@ def calls_of(text: str) -> int:
         count += event == "call" and "planner_reactor" in frame.f_code.co_filename
 
     sys.setprofile(call)
-    check_text(text)
+    check(text)
     sys.setprofile(None)
     return count
 

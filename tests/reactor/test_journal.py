@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import os
+from collections import Counter
 from pathlib import Path
 from random import Random
 
 import pytest
 
 from planner_reactor.errors import DiskError, InputError
-from planner_reactor.link.messages import Adaptation, Change
 from planner_reactor.reactor import journal as journals
 from planner_reactor.reactor.committed import Committed, Taken
 from planner_reactor.reactor.disks import FileDisk
@@ -20,44 +19,13 @@ from planner_reactor.reactor.journal import (
     Decided,
     Halted,
     Journal,
-    Record,
     State,
     after,
-    fold,
     framed,
-    read_records,
 )
+from tests.reactor.damage import as_a_journal_writes, damaged, in_one_file
 from tests.reactor.disks import TornDisk
-
-MANY = int(os.environ.get("JOURNAL_ADAPTATIONS", "12"))
-"""Adaptations in the journal that is cut and flipped in every byte."""
-
-
-def adaptation(number: int, *, epoch: int = 0) -> Adaptation:
-    situation = f"S{number % 5}"
-    return Adaptation(
-        id=number,
-        epoch=epoch,
-        definitions=f"P[{number}] = SIT[{situation}]<k> :; SUCCEED[{situation}, k]",
-        changes=(Change(situation=situation, base=(number - 1) // 5, assumptions=(f"A{number % 3}",)),),
-        kills=(number - 5,) if number > 5 else (),
-        adds=(number,),
-    )
-
-
-def history(many: int) -> list[Record]:
-    """Adaptations that are applied, but every seventh, and an assumption that fails now and then."""
-    records: list[Record] = []
-    for number in range(1, many + 1):
-        records.append(Begun(adaptation(number), float(number)))
-        if number % 4 == 0:
-            records.append(Assumed(f"A{number % 3}", number % 8 == 0, float(number)))
-        records.append(Decided(number, "timed_out" if number % 7 == 0 else "applied", number + 0.5))
-    return records
-
-
-def written(records: list[Record]) -> bytes:
-    return HEADER + b"".join(framed(r, n) for n, r in enumerate(records, 1))
+from tests.reactor.journals import adaptation, fold, history, written
 
 
 def test_what_was_written_is_recovered(tmp_path: Path) -> None:
@@ -82,25 +50,34 @@ def test_an_adaptation_counts_only_once_it_is_decided() -> None:
     assert not refused.open
 
 
-def test_a_cut_at_any_byte_leaves_a_prefix_of_what_was_written() -> None:
-    records = history(MANY)
-    content = written(records)
-    ends = [len(written(records[:n])) for n in range(len(records) + 1)]
-    for cut in range(len(HEADER), len(content) + 1):
-        whole = sum(end <= cut for end in ends) - 1
-        assert read_records(content[:cut]) == (records[:whole], ends[whole])
+@pytest.mark.parametrize("renewed", [False, True])
+def test_cut_at_any_byte_or_with_any_bit_flipped_it_is_what_was_written_before(
+    renewed: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A thousand adaptations: `python -m tests.reactor.damage`."""
+    monkeypatch.setattr(journals, "RENEW_AFTER", 8)
+    files = as_a_journal_writes(8) if renewed else [in_one_file(8)]
+    assert len(files) == (3 if renewed else 1)
+    for file in files:
+        found = list(damaged(file, wholly=0.02))
+        assert [problem for _, problem in found if problem] == []
+        counts = Counter(kind for kind, _ in found)
+        assert counts["cut"] == len(file.content) - len(HEADER)
+        assert counts["flip"] == 8 * counts["cut"]
 
 
-def test_a_bit_flipped_in_any_byte_is_never_read() -> None:
-    records = history(MANY)
-    content = written(records)
-    ends = [len(written(records[:n])) for n in range(len(records) + 1)]
-    random = Random(7)
-    for place in range(len(HEADER), len(content)):
-        flipped = bytearray(content)
-        flipped[place] ^= 1 << random.randrange(8)
-        whole = sum(end <= place for end in ends) - 1
-        assert read_records(bytes(flipped)) == (records[:whole], ends[whole]), place
+def test_a_reader_that_does_not_ask_for_check_sums_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(journals, "crc32", lambda content, start=0: 0)
+    assert any(problem for _, problem in damaged(in_one_file(2), wholly=0.0))
+
+
+def test_a_run_of_bytes_that_could_begin_a_record_is_passed_over(monkeypatch: pytest.MonkeyPatch) -> None:
+    looked_at = []
+    frame = journals._frame
+    monkeypatch.setattr(journals, "_frame", lambda content, place: looked_at.append(place) or frame(content, place))
+    torn = HEADER + b"\xa5" * 100_000
+    assert Journal(TornDisk(torn)).recover() == journals.Recovery(State(), lost=100_000)
+    assert len(looked_at) < 10
 
 
 def test_damage_before_sound_records_is_told_from_a_torn_end_and_kept_aside() -> None:

@@ -47,7 +47,7 @@ from planner_reactor.logic.itl_nodes import (
 )
 from planner_reactor.logic.itl_syntax import LABELS, parse
 from planner_reactor.logic.itl_tokens import Source
-from planner_reactor.logic.scope import TIME, Scope
+from planner_reactor.logic.scope import TIME, Constraints, Scope, standing
 
 _Atoms: TypeAlias = Iterable[tuple[AtomNode, Atom]]
 _CONDITIONS = ("presumes", "applicability", "executability")
@@ -162,17 +162,14 @@ class _Builder:
     def _goal(self, node: GoalNode, scope: Scope) -> Goal:
         self.survey.named("goal", node.name)
         clauses = [c for c in (node.antecedent, node.consequent) if c is not None]
-        scope.declare_quantified(node.forall, clauses)
-        scope.declare_quantified([n for c in clauses for n in c.exists], clauses)
+        scope.declare_quantified([*node.forall, *(n for c in clauses for n in c.exists)], standing(clauses))
         for clause in clauses:
             scope.check_relations([clause])
         antecedent = self._atoms(node.antecedent, scope, "needed") if node.antecedent else []
         consequent = self._atoms(node.consequent, scope, "needed")
-        lasting = tuple(
-            scope.relation([node.consequent], atom.at, TIME, 0) & ~_ENDS_WITH_TIME == 0
-            and scope.relation([node.consequent], atom.at, TIME, 0) != 0
-            for atom, _ in consequent
-        )
+        said = Constraints([node.consequent])
+        ends = [scope.relation(said, atom.at, TIME, 0) for atom, _ in consequent]
+        lasting = tuple(end != 0 and end & ~_ENDS_WITH_TIME == 0 for end in ends)
         return Goal(
             node.name.text,
             tuple(atom for _, atom in antecedent),
@@ -184,18 +181,18 @@ class _Builder:
 
     def _rule(self, node: RuleNode, scope: Scope) -> None:
         clauses = [node.left, node.right]
-        scope.declare_quantified(node.forall, clauses)
-        scope.declare_quantified([n for c in clauses for n in c.exists], clauses)
+        scope.declare_quantified([*node.forall, *(n for c in clauses for n in c.exists)], standing(clauses))
         scope.check_relations(clauses)
         if any(isinstance(literal, RelationNode) for literal in node.right.literals):
             self._exclusion(node, scope)
             return
-        body = self._atoms(node.left, scope, "needed")
+        body, said = self._atoms(node.left, scope, "needed"), Constraints(clauses)
+        distinct = self._distinct(node.left, scope)
         for head_node, head in self._atoms(node.right, scope, "produced"):
             self._no_assumption(head_node, "follow from a rule")
             centre = head_node.at.text if head_node.at else ""
             conditions = tuple(
-                Condition(atom, scope.relation(clauses, at.at, centre, NAMED["equal"]))
+                Condition(atom, scope.relation(said, at.at, centre, NAMED["equal"]))
                 for at, atom in body
                 if at.name.text not in self._arity
             )
@@ -206,7 +203,7 @@ class _Builder:
                     head,
                     conditions,
                     assumptions,
-                    self._distinct(node.left, scope),
+                    distinct,
                     len(scope.variables),
                     place,
                 )
@@ -271,8 +268,9 @@ class _Builder:
         scope.declare_intervals([node.name], used=True)
         clauses = [clause for _, clause in node.sections]
         unnamed: list[int] = []
+        intervals = standing(clauses)
         for label, clause in node.sections:
-            new = scope.declare_quantified(_once(clause.exists, scope.variables), clauses)
+            new = scope.declare_quantified(_once(clause.exists, scope.variables), intervals)
             unnamed.extend(new if label in ("effects", "otherwise") else ())
         scope.check_relations(clauses)
         atoms: dict[str, list[tuple[AtomNode, Atom]]] = {label: [] for label in LABELS}
@@ -314,16 +312,16 @@ class _Builder:
         return tuple([atom for _, atom in atoms["applicability"]] + assumed)
 
     def _conditions(self, schema: SchemaNode, atoms: _Atoms, scope: Scope) -> Iterable[Condition]:
-        clauses = [clause for label, clause in schema.sections if label in _CONDITIONS]
+        said = Constraints(clause for label, clause in schema.sections if label in _CONDITIONS)
         for node, atom in atoms:
             if node.name.text not in self._arity:
-                yield Condition(atom, scope.relation(clauses, node.at, schema.name.text, AT_START))
+                yield Condition(atom, scope.relation(said, node.at, schema.name.text, AT_START))
 
     def _effects(self, schema: SchemaNode, label: str, atoms: _Atoms, scope: Scope) -> Iterable[Effect]:
-        clauses = [clause for other, clause in schema.sections if other == label]
+        said = Constraints(clause for other, clause in schema.sections if other == label)
         for node, atom in atoms:
             self._no_assumption(node, "be an effect")
-            relation = scope.relation(clauses, node.at, schema.name.text, 0)
+            relation = scope.relation(said, node.at, schema.name.text, 0)
             yield Effect(atom, inverse(relation) if relation else MEETS)
 
     # ---------------------------------------------------------------------------------------- small parts

@@ -8,7 +8,7 @@ same section.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Collection, Container, Iterable
 from typing import TypeAlias
 
 from planner_reactor.errors import Diagnostic, nearest
@@ -22,7 +22,7 @@ TIME = "time"
 """The special interval of R (13): the whole line of time."""
 
 
-Constants: TypeAlias = dict[str, list[tuple[Name, tuple[str, ...]]]]
+Constants: TypeAlias = dict[str, list[tuple[Name, Collection[str]]]]
 """Where each constant stands, and which variables could have been meant there."""
 
 
@@ -56,11 +56,9 @@ class Scope:
                 self.finding(name, "duplicate-name", f"{name.text} is declared twice", "choose another name")
             self.intervals[name.text] = used
 
-    def declare_quantified(self, names: Iterable[Name], clauses: Iterable[Clause]) -> tuple[int, ...]:
-        """Number those of the names that never stand as an interval in these clauses; the others
-        are intervals.
-        """
-        standing = {name.text for clause in clauses for name in interval_names(clause)}
+    def declare_quantified(self, names: Iterable[Name], standing: Container[str]) -> tuple[int, ...]:
+        """Number those of the names that never stand as an interval (`standing`); the others are intervals."""
+        names = tuple(names)
         self.declare_intervals((n for n in names if n.text in standing), used=True)
         return self.declare(n for n in names if n.text not in standing)
 
@@ -76,7 +74,7 @@ class Scope:
         if name.text in self.intervals:
             self.finding(name, "misplaced-interval", f"the interval {name.text} stands as an argument",
                          "expected a variable or a constant")  # fmt: skip
-        self._constants.setdefault(name.text, []).append((name, tuple(self.variables)))
+        self._constants.setdefault(name.text, []).append((name, self.variables))
         return name.text
 
     def interval(self, name: Name) -> str:
@@ -88,27 +86,14 @@ class Scope:
             self.finding(name, "unknown-interval", f"the interval {name.text} is not declared", hint)
         return name.text
 
-    def relation(self, clauses: Iterable[Clause], interval: Name | None, centre: str, default: int) -> int:
-        """How the interval lies to `centre` by the constraints of these clauses; `default` if they
-        say nothing.
-        """
+    def relation(self, constraints: Constraints, interval: Name | None, centre: str, default: int) -> int:
+        """How the interval lies to `centre` by these constraints; `default` if they say nothing."""
         if interval is None:
             return default
         name = self.interval(interval)
         if name == centre:
             return NAMED["equal"]
-        constraints = [literal for c in clauses for literal in c.literals if isinstance(literal, RelationNode)]
-        found, related = ALL, False
-        for node in constraints:
-            ends = (node.first.text, node.second.text)
-            if ends == (name, centre):
-                found &= node.relation
-            elif ends == (centre, name):
-                found &= inverse(node.relation)
-            related = related or name in ends
-        if found == ALL and related:
-            found = _by_propagation(constraints, name, centre)
-        if not found:
+        if not (found := constraints.between(name, centre)):
             message = f"nothing can lie to {centre} as {name} should"
             self.finding(interval, "contradiction", message, "its constraints contradict each other")
         return default if found == ALL else found
@@ -122,18 +107,41 @@ class Scope:
                     self.interval(literal.second)
 
 
-def interval_names(clause: Clause) -> Iterable[Name]:
-    """The names that stand as intervals in a clause."""
+class Constraints:
+    """What the constraints `ITL(…)` of some clauses say: gathered once, asked for every interval."""
+
+    def __init__(self, clauses: Iterable[Clause]) -> None:
+        self._nodes = [literal for c in clauses for literal in c.literals if isinstance(literal, RelationNode)]
+        self._said: dict[tuple[str, str], int] = {}
+        self._network: Network | None = None
+        for node in self._nodes:
+            first, second = node.first.text, node.second.text
+            self._said[first, second] = self._said.get((first, second), ALL) & node.relation
+            if first != second:
+                self._said[second, first] = self._said.get((second, first), ALL) & inverse(node.relation)
+        self._named = {name for pair in self._said for name in pair}
+
+    def between(self, first: str, second: str) -> int:
+        """How the first lies to the second: what is said of the two, or else what follows from all; ALL if nothing."""
+        found = self._said.get((first, second), ALL)
+        if found != ALL or first not in self._named:
+            return found
+        if self._network is None:
+            self._network = Network()
+            for node in self._nodes:
+                self._network.constrain(node.first.text, node.second.text, node.relation)
+        return self._network.relation(first, second) if self._network.consistent else 0
+
+
+def standing(clauses: Iterable[Clause]) -> set[str]:
+    """The names that stand as intervals in these clauses."""
+    return {name.text for clause in clauses for name in _interval_names(clause)}
+
+
+def _interval_names(clause: Clause) -> Iterable[Name]:
     for literal in clause.literals:
         if isinstance(literal, AtomNode) and literal.at is not None:
             yield literal.at
         elif isinstance(literal, RelationNode):
             yield literal.first
             yield literal.second
-
-
-def _by_propagation(constraints: Iterable[RelationNode], name: str, centre: str) -> int:
-    network = Network()
-    for node in constraints:
-        network.constrain(node.first.text, node.second.text, node.relation)
-    return network.relation(name, centre) if network.consistent else 0

@@ -2,7 +2,7 @@
 
     record  =  A5 · length (4) · number (4) · CRC-32 of length, number and content (4) · content (MessagePack)
 
-Recovery reads the longest valid prefix and folds it. An adaptation counts from its `Decided(applied)` on, which is
+Recovery folds the longest prefix of sound records. An adaptation counts from its `Decided(applied)` on, which is
 synced after the last drain has ended and before the first KILL: a crash before it leaves the old structure, a crash
 after it the new one. Now and then a snapshot takes the place of everything before it, so that recovery does not take
 longer as the reactor grows older.
@@ -13,7 +13,8 @@ begins the journal anew, as one snapshot. What could not be written meanwhile is
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import re
+from collections.abc import Iterable
 from typing import Literal, TypeAlias
 from zlib import crc32
 
@@ -32,6 +33,9 @@ FRAME = 13
 
 LARGEST = 16_000_000
 """Bytes of the largest record that is read."""
+
+_BEGINNING = re.compile(b"\xa5(?=\x00)")
+"""How a record begins: the length of none needs its first byte."""
 
 RENEW_AFTER = 256
 """Records after which a snapshot takes their place."""
@@ -111,6 +115,18 @@ _encode = msgspec.msgpack.Encoder(enc_hook=dict).encode  # persistent mappings a
 _decode = msgspec.msgpack.Decoder(Record).decode
 
 
+class Reading(msgspec.Struct, frozen=True):
+    """What the first records of a journal come to: `records` of them, `place` bytes with its header."""
+
+    state: State = State()
+    place: int = len(HEADER)
+    records: int = 0
+
+
+NOTHING = Reading()
+"""Its header."""
+
+
 class Recovery(msgspec.Struct, frozen=True):
     """What was found: `lost` bytes at the end are no valid record; `damaged` if valid ones stood behind them.
 
@@ -136,19 +152,20 @@ class Journal:
     def recover(self) -> Recovery:
         """Read what survived, and cut off what is no record; `InputError` if this is no journal."""
         content = self._disk.read()
-        if HEADER.startswith(content):  # nothing yet, or torn at its very beginning
+        if len(content) < len(HEADER) and HEADER.startswith(content):  # nothing yet, or torn at its very beginning
             self._disk.replace(HEADER)
             return Recovery(self.state, lost=len(content))
         if not content.startswith(HEADER):
             raise InputError(f"this is no journal: it begins with {content[: len(HEADER)]!r}, expected {HEADER!r}")
-        records, valid = read_records(content)
-        self.state, self.records = fold(records), len(records)
-        recovery = Recovery(self.state, len(content) - valid, damaged=_any_record(content, valid))
-        if recovery.lost:
+        found = read(content)
+        self.state, self.records = found.state, found.records
+        if len(content) > found.place:
+            recovery = Recovery(self.state, len(content) - found.place, damaged=any_record(content, found.place))
             if recovery.damaged:
                 self._disk.set_aside(content)
-            self._disk.replace(content[:valid])
-        return recovery
+            self._disk.replace(content[: found.place])
+            return recovery
+        return Recovery(self.state)
 
     def write(self, *records: Record, sync: bool = True) -> None:
         """Make these durable, all or none in effect; `DiskError` if that cannot be done, and then none counts.
@@ -200,54 +217,42 @@ def framed(record: Record, number: int) -> bytes:
     return bytes([MARK]) + head + crc32(head + content).to_bytes(4, "big") + content
 
 
-def read_records(content: bytes) -> tuple[list[Record], int]:
-    """The records of the longest valid prefix, and how many bytes it has."""
-    records: list[Record] = []
-    place = len(HEADER)
-    for record, end in _records(content, place):
-        records.append(record)
-        place = end
-    return records, place
-
-
-def _records(content: bytes, place: int) -> Iterator[tuple[Record, int]]:
-    number = 1
+def read(content: bytes | bytearray, since: Reading = NOTHING) -> Reading:
+    """What all sound records come to, up to the first that is not. What was read before is not read again: `since`."""
+    state, place, records = since.state, since.place, since.records
     while (frame := _frame(content, place)) is not None:
-        found, body = frame
-        if found != number:
-            return
+        number, body = frame
+        if number != records + 1:
+            break
         try:
-            record = _decode(body)
+            state = after(state, _decode(body))
         except (msgspec.MsgspecError, RecursionError, UnicodeDecodeError):
-            return
-        place += FRAME + len(body)
-        number += 1
-        yield record, place
+            break
+        place, records = place + FRAME + len(body), number
+    return Reading(state, place, records)
 
 
-def _frame(content: bytes, place: int) -> tuple[int, bytes] | None:
+def any_record(content: bytes | bytearray, place: int) -> bool:
+    """Is there a sound record anywhere from here on?"""
+    return any(_frame(content, found.start()) is not None for found in _BEGINNING.finditer(content, place))
+
+
+def _frame(content: bytes | bytearray, place: int) -> tuple[int, bytes | bytearray] | None:
     """(number, content) of the record at a place, if there is a whole and sound one."""
-    if place + FRAME > len(content) or content[place] != MARK:
+    start = place + FRAME
+    if start > len(content) or content[place] != MARK:
         return None
     head = content[place + 1 : place + 9]
     length = int.from_bytes(head[:4], "big")
-    body = content[place + FRAME : place + FRAME + length]
-    expected = int.from_bytes(content[place + 9 : place + FRAME], "big")
-    if length > LARGEST or len(body) < length or crc32(head + body) != expected:
+    if length > LARGEST or start + length > len(content):
+        return None
+    body = content[start : start + length]
+    if crc32(body, crc32(head)) != int.from_bytes(content[place + 9 : start], "big"):
         return None
     return int.from_bytes(head[4:], "big"), body
 
 
-def _any_record(content: bytes, place: int) -> bool:
-    """Is there a sound record anywhere from here on?"""
-    while (place := content.find(MARK, place)) >= 0:
-        if _frame(content, place) is not None:
-            return True
-        place += 1
-    return False
-
-
-def fold(records: list[Record]) -> State:
+def fold(records: Iterable[Record]) -> State:
     """What these records come to."""
     state = State()
     for record in records:
