@@ -39,6 +39,9 @@ from planner_reactor.rs.reactions import (
 from planner_reactor.rs.terms import Process
 from planner_reactor.runtime import Executer, Root, Scheduler, Timer
 
+ROUNDING = 1e-6
+"""Seconds by which the clock may be past a deadline that is met: sums are rounded."""
+
 LONGEST = 600.0
 """Seconds after which an adaptation whose bound cannot be computed is given up."""
 
@@ -64,6 +67,11 @@ class Transaction:
     adds: list[int] = field(default_factory=list)  # done
     reason: str = ""  # why it came to nothing, if its deadline is not why: a word
     problem: str = ""  # and a sentence
+
+    @property
+    def deadline(self) -> float:
+        """The instant, seconds, after which nothing of it is committed any more."""
+        return self.received + self.limit
 
     @property
     def situations(self) -> tuple[str, ...]:
@@ -149,9 +157,14 @@ class Transactions:
         return transaction
 
     def commit(self, number: int) -> Transaction | None:
-        """COMMIT[number]: the journal says that it is applied, before anything of it is. None if it cannot."""
+        """COMMIT[number]: the journal says that it is applied, before anything of it is.
+
+        None if it cannot, or if its bound has passed: a loop that was held up comes here before the timer is told.
+        """
         for transaction in self.under_way:
             if transaction.adaptation.id == number and transaction.state == "draining" and not transaction.reason:
+                if self._scheduler.now > transaction.deadline + ROUNDING:
+                    return None
                 try:
                     epoch = transaction.adaptation.epoch
                     self._journal.write(Decided(number, "applied", self._scheduler.now, epoch))

@@ -72,7 +72,7 @@ class Timer:
 class Scheduler:
     """Runs actions in order of time. `now` is the present instant in seconds; it stands still while actions run."""
 
-    __slots__ = ("_buckets", "_instants", "_present", "_soon", "_stale", "_stopped", "_streams", "_sweep_at",
+    __slots__ = ("_attended", "_buckets", "_instants", "_present", "_soon", "_stale", "_stopped", "_streams", "_sweep_at",
                  "clock", "now", "seed")  # fmt: skip
 
     def __init__(self, clock: Clock, *, seed: int = 0) -> None:
@@ -86,6 +86,7 @@ class Scheduler:
         self._stale = 0
         self._sweep_at = SWEEP_FROM
         self._stopped = False
+        self._attended = self.now
         self._streams: dict[str, random.Random] = {}
 
     def call_at(self, when: float, action: Action) -> Timer:
@@ -185,21 +186,29 @@ class Scheduler:
             entry[0].elapsed(entry)
 
     def _run_waiting(self, limit: float) -> None:
+        """All that is due when the clock is read is done at that instant, with what it leads to, however late it is."""
         soon, instants, clock = self._soon, self._instants, self.clock
+        due = False  # was anything, when this instant was last looked at?
         while not self._stopped:
-            self.now = max(self.now, clock.read())
+            if not due:
+                self._attended, self.now = self.now, max(self.now, clock.read())
             for _ in range(len(soon)):  # not what they add: time goes on
                 soon.popleft()()
             while instants and instants[0] <= self.now:
                 bucket = self._buckets.pop(heappop(instants))
                 self._present[:0] = reversed(bucket) if isinstance(bucket, list) else [bucket]
-            if self._present:
+            if due := bool(self._present):
                 entry = self._present.pop()
                 entry[0].elapsed(entry)
             elif not soon and not self._stopped:
                 if self.now >= limit:
                     return
                 clock.reach(min(limit, instants[0]) if instants else limit)
+
+    @property
+    def attended(self) -> float:
+        """The instant up to which all that was due has been done: before `now` if the wall clock has gone on since."""
+        return self.now if self.clock.jumps else self._attended
 
     @property
     def idle(self) -> bool:
