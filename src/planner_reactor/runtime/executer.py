@@ -22,6 +22,7 @@ from planner_reactor.runtime.host import Host
 from planner_reactor.runtime.kernel import Kernel
 from planner_reactor.runtime.leaves import Use
 from planner_reactor.runtime.outcomes import Control, Label, Observer, Outcome
+from planner_reactor.runtime.ports import Port
 from planner_reactor.runtime.rest import is_resting
 from planner_reactor.runtime.scheduler import Scheduler
 from planner_reactor.runtime.strands import WAITING, WOKEN, Body, Root, Strand
@@ -79,6 +80,8 @@ class Executer:
         self._kernel.on_end = self._ended
         if trace is not None:
             self._kernel.note = trace.record
+        if host is not None:
+            self._compiler.ports.adopt(host.ports)
         self._compiler.definitions.load(PRELUDE.schemas)
         self.load(program.schemas)
 
@@ -176,6 +179,10 @@ class Executer:
     def ports(self) -> Mapping[Value, str]:
         """At which ports something waits, and which side ("IN" or "OUT")."""
         return self._compiler.ports.waiting()
+
+    def share(self, *names: str) -> dict[str, Port]:
+        """These ports, for a host's `ports`: programs of that host then meet at them what runs here."""
+        return {name: self._compiler.ports.share(name) for name in names}
 
     # -- for controls
 

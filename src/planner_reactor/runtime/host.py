@@ -17,7 +17,7 @@ from __future__ import annotations
 import inspect
 from collections.abc import Callable, Mapping
 from math import inf, isfinite
-from typing import Any, Protocol, TypeVar, get_type_hints
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar, get_type_hints
 
 import msgspec
 
@@ -26,6 +26,9 @@ from planner_reactor.rs.terms import Value
 from planner_reactor.rs.vocabulary import BUILT_IN, Kind, Signature
 from planner_reactor.runtime.scheduler import Scheduler
 from planner_reactor.runtime.sensing import PLAIN, Caution, Sensed
+
+if TYPE_CHECKING:
+    from planner_reactor.runtime.ports import Port
 
 Routine = TypeVar("Routine", bound=Callable[..., Any])
 Sensor = TypeVar("Sensor", bound=Callable[[], Sensed])
@@ -85,6 +88,7 @@ class Host:
         self.cautions: dict[str, Caution] = {}
         self.world: World | None = None
         self.watchdog: Watchdog | None = None
+        self.ports: Mapping[str, Port] = {}  # what else serves them: see `Executer.share`
         self._listeners: list[Listener] = []
 
     @property

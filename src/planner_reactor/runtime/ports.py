@@ -3,15 +3,19 @@
 A write and a read meet pairwise, first come first served on both sides: at any time only one side waits. Those who
 wait are linked through the strands themselves, so that one that is aborted leaves in constant time and an idle port
 costs next to nothing.
+
+A port can be shared by two executers on one scheduler (`Executer.share`): what waits there on one side meets what
+comes on the other, and nothing else passes between the two.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 from planner_reactor.rs.expressions import EvaluationError
 from planner_reactor.rs.terms import Number, Symbol, Text, Value
 from planner_reactor.runtime.leaves import Setting
+from planner_reactor.runtime.outcomes import Label
 from planner_reactor.runtime.strands import RUNNING, WAITING, Instruction, Strand
 
 SWEEP_FROM = 1024
@@ -87,6 +91,16 @@ class Ports:
         for idle in [n for n, p in self._by_name.items() if p.first is None and not p.pinned]:
             del self._by_name[idle]
         self._sweep_at = max(SWEEP_FROM, 2 * len(self._by_name))
+
+    def share(self, name: Value) -> Port:
+        """The port of this name, to be given to other executers."""
+        port = self.named(name)
+        port.pinned = True
+        return port
+
+    def adopt(self, ports: Mapping[str, Port]) -> None:
+        """From now on these names mean ports of another executer. Before anything is compiled."""
+        self._by_name.update(ports)
 
     def fixed(self, setting: Setting) -> Port | None:
         """The port of a call whose first argument is a constant."""
@@ -200,14 +214,33 @@ def communicated(
 ) -> Instruction | None:
     """COM, a step of both: the partner is taken to its next leaf, then the one that came last goes on."""
     kernel = own.kernel
-    kernel.steps += 1
-    kernel.rendezvous += 1
-    if kernel.observer is not None:
-        writer, reader = (own, leaf) if isinstance(own, Out) else (leaf, own)
-        kernel.tell(("COM", (name, value), "ok", ()), writer.where.site, reader.where.site)
-    partner.state = RUNNING
-    kernel.advance(partner, leaf.ok)
+    if leaf.kernel is kernel:
+        kernel.steps += 1
+        kernel.rendezvous += 1
+        if kernel.observer is not None:
+            writer, reader = (own, leaf) if isinstance(own, Out) else (leaf, own)
+            kernel.tell(("COM", (name, value), "ok", ()), writer.where.site, reader.where.site)
+        partner.state = RUNNING
+        kernel.advance(partner, leaf.ok)
+    else:
+        _met_abroad(own, partner, leaf, name, value)
     if kernel.due:
         kernel.queue(strand, own.ok)
         return None
     return own.ok
+
+
+def _met_abroad(own: In | Out, partner: Strand, leaf: In | Out, name: Value, value: Value) -> None:
+    """COM between two executers: each sees its own side, and both have settled before anything else happens."""
+    for side in (own, leaf):
+        kernel = side.kernel
+        kernel.steps += 1
+        kernel.rendezvous += 1
+        if kernel.observer is not None:
+            wrote: Label = ("OUT", (name, value), "ok", ())
+            read: Label = ("IN", (name,), "ok", (value,))
+            kernel.tell(wrote if isinstance(side, Out) else read, side.where.site)
+    abroad = leaf.kernel
+    abroad.queue(partner, leaf.ok)
+    abroad.settle()
+    abroad.arm()
