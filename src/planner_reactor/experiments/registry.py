@@ -48,4 +48,6 @@ EXPERIMENTS: dict[str, Experiment] = {
     "startup": Experiment("how long the planner thinks: to act, to be ideal, to relax", _of("startup")),
     "ideal": Experiment("are the planner's reactors ω-ideal? every run, where assumptions hold and where they fail",
                         _of("ideal_reactors")),
+    "assumptions": Experiment("are the nine assumptions real? reactors built on each and without it, in worlds with it "
+                              "and without", _of("assumptions")),
 }
