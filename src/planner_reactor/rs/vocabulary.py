@@ -32,7 +32,8 @@ class Signature:
     The last `optional` of `inputs` may be left out; with `open_inputs` any number of further arguments may
     follow. A call names none of the results, or all of them, with `open_results` any number of further ones.
     `window` is the least and greatest age in seconds at which the process ends (None: it depends on its
-    arguments or on others), `outcomes` how it may end, beside an abort for arguments that have no value.
+    arguments or on others), `outcomes` how it may end, beside an abort for arguments that have no value. `means` is a
+    test in RS on `parameters`, such as `LST[p, a]`: the process stops where the test would (the stop condition of X §6.1).
     """
 
     name: str
@@ -44,6 +45,8 @@ class Signature:
     open_results: bool = False
     window: tuple[float, float] | None = None
     outcomes: frozenset[str] = BOTH
+    parameters: tuple[str, ...] = ()
+    means: str = ""
 
     def takes(self, count: int) -> bool:
         """May it be called with this many arguments?"""

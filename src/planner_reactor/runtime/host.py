@@ -105,13 +105,16 @@ class Host:
         limit: float | None = None,
         abandon: Callable[..., object] | None = None,
         name: str | None = None,
+        means: str = "",
     ) -> Callable[[Routine], Routine]:
         """Register a function, a generator function or a coroutine function as a basic process.
 
         Parameters annotated `float` or `int` take numbers, `str` symbols, any other a value of any kind. What it
         returns are its results: None for none, a tuple for several. It ends at an age within `window`; if it would end
         earlier, it ends at the window's beginning. After `limit` seconds (the window's end, if not given) it is
-        abandoned and aborts. `abandon(*arguments)` is called once if it is aborted from outside while it runs.
+        abandoned and aborts. `abandon(*arguments)` is called once if it is aborted from outside while it runs. `means` is
+        a test in RS on its parameters, `LST[p - a, 1] : LST[a - p, 1]`, that stops where the process stops: with it an
+        analysis knows what the outcome says.
         """
 
         def register(routine: Routine) -> Routine:
@@ -123,7 +126,7 @@ class Host:
             _check_outcomes(own, outcomes)
             signature = Signature(
                 own, kinds, names, optional=optional, window=(window[0], min(window[1], longest)),
-                outcomes=frozenset(outcomes),
+                outcomes=frozenset(outcomes), parameters=tuple(inspect.signature(routine).parameters), means=means,
             )  # fmt: skip
             self.processes[own] = BasicProcess(signature, routine, abandon, longest, len(kinds))
             return routine

@@ -25,7 +25,7 @@ def model(name: str) -> str:
     return (files(__package__ or __name__) / f"{name}.rsl").read_text(encoding="utf-8")
 
 
-@host.process(window=(0.0, 0.0))
+@host.process(window=(0.0, 0.0), means=f"~GTR[p - a, {FIELD}] : ~GTR[a - p, {FIELD}]")
 def InView(p: float, a: float) -> None:
     """Is an object at p in view of a camera that looks at a?"""
     if abs(p - a) > FIELD:
