@@ -21,6 +21,9 @@ STATE = Path("out/fuzz.json")
 SLOWEST = 0.05
 """Seconds of CPU time."""
 
+AGAIN = 4
+"""What takes longer is measured so often again, and the least counts: what else the machine did is not the input's."""
+
 GROWTH = 64_000
 """Kilobytes by which one input may make the process grow."""
 
@@ -32,7 +35,8 @@ def main() -> None:
     arguments.add_argument("--fresh", action="store_true", help="begin at the first seed")
     given = arguments.parse_args()
     if given.only is not None:
-        print(attacked(given.only)[0], survived(attacked(given.only)[1]))
+        name, attack = attacked(given.only)
+        print(name, "refused" if survived(attack) else "taken")
         return
     STATE.parent.mkdir(exist_ok=True)
     state: dict[str, Any] = {"done": 0, "refused": 0, "wrong": []}
@@ -67,18 +71,23 @@ def judged(seed: int) -> tuple[str, str, float, bool]:
             raise
         problem = f"{type(raised).__name__}: {str(raised)[:200]}"
     taken = time.thread_time() - began
+    for _ in range(AGAIN):
+        if taken <= SLOWEST or problem:
+            break
+        taken = min(taken, _again(seed))
     if taken > SLOWEST and not problem:
-        _, again = attacked(seed)
-        gc.collect()
-        began = time.thread_time()
-        try:
-            survived(again)
-        finally:
-            taken = min(taken, time.thread_time() - began)  # what else the machine did is not counted
-        problem = f"took {taken * 1e3:.0f} ms" if taken > SLOWEST else ""
+        problem = f"took {taken * 1e3:.0f} ms"
     if (more := resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - grown) > GROWTH:
         problem = problem or f"took {more // 1000} MB"
     return name, problem, taken * 1e3, refused
+
+
+def _again(seed: int) -> float:
+    _, attack = attacked(seed)
+    gc.collect()
+    began = time.thread_time()
+    survived(attack)
+    return time.thread_time() - began
 
 
 main()

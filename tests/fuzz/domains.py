@@ -12,7 +12,8 @@ SOUND = tuple(
     for path in sorted([*(ROOT / "examples").glob("*.itl"), *(ROOT / "src").rglob("*.itl")])
 )
 TOKENS = re.compile(r"\s+|\w+|.", re.DOTALL)
-WORDS = sorted({token for text in SOUND for token in TOKENS.findall(text) if not token.isspace()})
+CUT = [TOKENS.findall(text) for text in SOUND]
+WORDS = sorted({token for tokens in CUT for token in tokens if not token.isspace()})
 
 
 def domain(draw: Random) -> str:
@@ -21,7 +22,7 @@ def domain(draw: Random) -> str:
 
 
 def edited(draw: Random) -> str:
-    tokens = TOKENS.findall(draw.choice(SOUND))
+    tokens = list(draw.choice(CUT))
     for _ in range(draw.randint(1, 6)):
         at = draw.randrange(len(tokens))
         others = (draw.choice(ODD), draw.choice(WORDS), draw.choice(tokens))

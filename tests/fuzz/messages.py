@@ -10,7 +10,7 @@ from zlib import crc32
 import msgspec
 
 from planner_reactor.link.codec import encode
-from planner_reactor.link.messages import Adaptation, Change, Mode
+from planner_reactor.link.messages import Adaptation, Change, Enquiry, Mode, Perception, Standing
 from planner_reactor.link.session import Frame, Session
 from planner_reactor.reactor.journal import HEADER, framed
 from tests.fuzz.texts import ODD, rs, size
@@ -39,14 +39,17 @@ def damaged(draw: Random, content: bytes) -> bytes:
     return bytes(found)
 
 
+PLAIN = (
+    None, True, 0, -1, 1, 40, 2**63, -(2**63), 1e308, float("nan"), float("inf"), "applied", "drain", "x", b"\xff" * 9,
+    *[odd for odd in ODD if odd != "\ud800"],
+)  # fmt: skip
+
+
 def value(draw: Random, depth: int = 3) -> Any:
     """Any plain value."""
     if depth == 0 or draw.random() < 0.6:
-        return draw.choice((
-            None, True, 0, -1, 1, 2**63, -(2**63), 1e308, float("nan"), float("inf"), "applied", "drain",
-            b"\xff" * 9,
-            "x" * size(draw), draw.randrange(40), *[odd for odd in ODD if odd != "\ud800"],
-        ))  # fmt: skip
+        chosen = draw.choice(PLAIN)
+        return "x" * size(draw) if chosen == "x" else draw.randrange(40) if chosen == 40 else chosen
     if draw.random() < 0.5:
         return [value(draw, depth - 1) for _ in range(size(draw, 20))]
     return {draw.choice(("type", "id", "adaptation", "state", "time", "x")): value(draw, depth - 1) for _ in range(4)}
@@ -108,16 +111,25 @@ def frame(draw: Random) -> bytes:
     return nesting(draw)
 
 
+FIELDS = {kind.__name__.lower(): kind.__struct_fields__ for kind in (Adaptation, Enquiry, Perception, Standing)}
+MESSAGES = (
+    FIRST, SECOND, Enquiry(enquirer=3), Perception(number=1, kind="assumption_failure", subject="A", time=2.0, count=7),
+    Perception(number=2, kind="information", subject="answer", time=3.0, values=(1, "x", 2.5)),
+    Standing(enquirer=3, epoch=2, versions={"work": 4}, clauses={0: "P[0] = STOP :; ASSERT[work]"}),
+)  # fmt: skip
+
+
 def message(draw: Random) -> bytes:
     """A message within a frame."""
-    how = draw.randrange(4)
-    if how == 0:
-        return damaged(draw, encode(draw.choice((FIRST, SECOND))))
-    if how == 1:
-        return _packed([draw.choice(("adaptation", "perception", "other", 3)), value(draw)])
+    how = draw.randrange(5)
+    if how <= 1:
+        return damaged(draw, encode(draw.choice(MESSAGES)))
+    kind = draw.choice((*FIELDS, "other", 3))
     if how == 2:
-        fields = ("id", "epoch", "definitions", "changes", "kills", "adds", "mode", "deadline", "number", "subject")
-        return _packed(["adaptation", {name: value(draw) for name in fields}])
+        return _packed([kind, value(draw)])
+    if how == 3:
+        fields = FIELDS.get(kind, ("id",))  # type: ignore[call-overload]  # also of what is no kind
+        return _packed([kind, {name: value(draw) for name in fields if draw.random() < 0.9}])
     return b"\x92\xaaadaptation" + nesting(draw)
 
 

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from random import Random
 
 from planner_reactor.errors import PlannerReactorError
-from planner_reactor.link.codec import decode
+from planner_reactor.link.codec import decode, encode
 from planner_reactor.logic.reader import read_domain
 from planner_reactor.reactor.journal import Journal
 from planner_reactor.rs.checks import check_text
@@ -69,7 +69,12 @@ def of_frame(draw: Random) -> Attack:
 
 def of_message(draw: Random) -> Attack:
     content = messages.message(draw)
-    return lambda: decode(content)
+
+    def take() -> None:
+        taken = encode(decode(content))
+        assert encode(decode(taken)) == taken  # what is taken is said again as it is
+
+    return take
 
 
 def of_adaptation(draw: Random) -> Attack:
@@ -92,7 +97,7 @@ SUBJECTS: dict[str, Subject] = {
     "RS": of_rs, "domain": of_domain, "journal": of_journal, "frame": of_frame, "message": of_message,
     "adaptation": of_adaptation,
 }  # fmt: skip
-SHARES = {"RS": 5, "domain": 2, "journal": 3, "frame": 2, "message": 2, "adaptation": 1}
+SHARES = {"RS": 10, "domain": 4, "journal": 6, "frame": 4, "message": 5, "adaptation": 1}
 """How often each is attacked, in proportion."""
 
 ORDER = tuple(name for name, share in SHARES.items() for _ in range(share))

@@ -14,6 +14,7 @@ from random import Random
 ROOT = Path(__file__).parents[2]
 SOUND = tuple(path.read_text(encoding="utf-8") for path in sorted((ROOT / "examples").glob("*.rsl")))
 TOKENS = re.compile(r"\s+|\w+|::|:;|.", re.DOTALL)
+CUT = [TOKENS.findall(text) for text in SOUND]
 ODD = (
     "", "\x00", "\ud800", "é", "̈", "\u202e", "\u2028", "\ufeff", "𝟙", "Ⅷ", "'", '"', '"x', "\\", "/*", "--", "#",
     "1e999", "-1e-999", "nan", "inf", "0x1f", "1_000", "..", "=", "==", "[", "]", "<", ">", ",", "(", ")", "~", "|",
@@ -101,7 +102,7 @@ def numbers(draw: Random) -> str:
 
 def edited(draw: Random) -> str:
     """A sound program with some tokens lost, doubled, exchanged or replaced."""
-    tokens = TOKENS.findall(draw.choice(SOUND))
+    tokens = list(draw.choice(CUT))
     for _ in range(draw.randint(1, 6)):
         at, other = draw.randrange(len(tokens)), draw.randrange(len(tokens))
         how = draw.randrange(5)
