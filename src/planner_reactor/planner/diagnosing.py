@@ -53,3 +53,8 @@ class Diagnosing:
     def _doubt(self, name: str, beliefs: Beliefs) -> float:
         likely = 1 - beliefs.assumption(name).likelihood
         return likely if name in self.blind else likely * OVERLOOKED
+
+
+def suspects(diagnoses: Iterable[Diagnosis]) -> list[str]:
+    """The assumptions of the diagnoses that convince, the most probable first."""
+    return [name for diagnosis in diagnoses if diagnosis.confidence >= CONVINCING for name in diagnosis.assumptions]

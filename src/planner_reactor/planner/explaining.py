@@ -12,6 +12,7 @@ from collections.abc import Iterator
 
 import msgspec
 
+from planner_reactor.errors import InputError
 from planner_reactor.logic.domain import ActionSchema
 from planner_reactor.logic.formulas import Atom, Term, variables
 from planner_reactor.planner.because import Because
@@ -83,6 +84,13 @@ def explain(record: Record, theory: Theory, *, fold: bool) -> Explanation:
     """The reasons behind an adaptation."""
     reasons = tuple(reasons_for(subject, theory, fold=fold) for subject in record.subjects)
     return Explanation(record.adaptation, record.purpose, record.because, reasons)
+
+
+def unrecorded(adaptation: int, last: int) -> Explanation:
+    """Of an adaptation of which nothing is kept; InputError if there was none."""
+    if not 0 < adaptation <= last:
+        raise InputError(f"no adaptation {adaptation}, the last is {last}")
+    return Explanation(adaptation, "monitors and requests", (), ())
 
 
 def reasons_for(subject: Subject, theory: Theory, *, fold: bool) -> Reasons:

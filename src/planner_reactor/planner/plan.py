@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from typing import TypeAlias
 
 import msgspec
 
@@ -26,6 +27,9 @@ BEFORE = relations(["b", "m"])
 NOT_LATER = relations(["b", "m", "o", "s", "si", "e", "di", "fi"])
 """The first starts before the second, or with it."""
 CONTAINS = relations(["si", "e", "di", "fi"])
+
+Turn: TypeAlias = tuple[int, int]
+"""Of two steps that share a resource: which one goes before which."""
 
 
 class Parameter(msgspec.Struct, frozen=True):
@@ -94,7 +98,7 @@ class Use(msgspec.Struct, frozen=True):
 @dataclass(slots=True)
 class Plan:
     """The mutable state of a search. Its steps count from `first`, so that plans that follow each
-    other differ.
+    other differ. A finished plan has the `turns` of steps that share resources (`sharing`).
     """
 
     bindings: Bindings = field(default_factory=Bindings)
@@ -103,6 +107,7 @@ class Plan:
     links: list[Link] = field(default_factory=list)
     uses: list[Use] = field(default_factory=list)
     distinct: list[tuple[Term, Term]] = field(default_factory=list)
+    turns: list[Turn] = field(default_factory=list)
     assumed: list[Atom] = field(default_factory=list)  # assumptions whose arguments were still open
     variables: int = 0
     first: int = 0

@@ -22,12 +22,12 @@ from planner_reactor.errors import InputError, nearest
 from planner_reactor.link.messages import Mode, Perception, Standing
 from planner_reactor.logic.diagnosis import Diagnosis
 from planner_reactor.logic.domain import Domain
-from planner_reactor.logic.formulas import Atom
 from planner_reactor.planner.agenda import ACTIVE_STUB, FAILED_ASSUMPTION, FAILED_SITUATION, QUIESCENT
 from planner_reactor.planner.because import Because
 from planner_reactor.planner.convergence import lacking, unlikelihood
-from planner_reactor.planner.diagnosing import CONVINCING, Diagnosing
-from planner_reactor.planner.explaining import Explanation, explain
+from planner_reactor.planner.diagnosing import Diagnosing, suspects
+from planner_reactor.planner.explaining import Explanation, explain, unrecorded
+from planner_reactor.planner.forecast import Forecast
 from planner_reactor.planner.foresight import Foresight
 from planner_reactor.planner.goals import chosen_goal, must_follow
 from planner_reactor.planner.issuing import Issuer
@@ -35,7 +35,7 @@ from planner_reactor.planner.model import Model
 from planner_reactor.planner.reducing import Reducer
 from planner_reactor.planner.relaxing import Assuming
 from planner_reactor.planner.resuming import Resumption, begun_anew
-from planner_reactor.planner.sensing import observer_of
+from planner_reactor.planner.sensing import answer, to_ask
 from planner_reactor.planner.standings import ANSWERS, Standings
 from planner_reactor.planner.steps import Cause, Relax, Relaxation, Step
 from planner_reactor.planner.theory import Theory
@@ -145,8 +145,13 @@ class Planner:
     @property
     def warnings(self) -> tuple[str, ...]:
         """What looks wrong about the segments as they are planned."""
-        found = (w for segment in self.model if segment.refinement for w in segment.refinement.warnings)
-        return tuple(dict.fromkeys(found))
+        found = [w for segment in self.model if segment.refinement for w in segment.refinement.warnings]
+        return tuple(dict.fromkeys([*found, *self.forecast.contentions()]))
+
+    @property
+    def forecast(self) -> Forecast:
+        """How long situations will last, and where resources may be short, as the reactor is planned now."""
+        return Forecast(self.domain, self.model, self._issuer.fold)
 
     @property
     def withheld(self) -> Mapping[int, str]:
@@ -156,11 +161,9 @@ class Planner:
     def explain(self, adaptation: int) -> Explanation:
         """Why an adaptation was issued, and why its reactions are what they are; of the last 10,000."""
         record = self._reducer.records.get(adaptation)
-        if record is not None:
-            return explain(record, self._reducer.theory, fold=self._issuer.fold)
-        if not 0 < adaptation < self._issuer.next_id:
-            raise InputError(f"no adaptation {adaptation}, the last is {self._issuer.next_id - 1}")
-        return Explanation(adaptation, "monitors and requests", (), ())
+        if record is None:
+            return unrecorded(adaptation, self._issuer.next_id - 1)
+        return explain(record, self._reducer.theory, fold=self._issuer.fold)
 
     # ----------------------------------------------------------------------------------- goals at run time
 
@@ -274,13 +277,8 @@ class Planner:
 
     def _watch(self) -> Step | None:
         """Monitors and perception requests that belong to no situation."""
-        asked = {}
-        for segment in self._reducer.segments:
-            for atom in (*segment.asked, *(segment.refinement.asked if segment.refinement else ())):
-                action = observer_of(self.domain, atom)
-                if action is not None and self._assuming.beliefs.known(atom) is None:
-                    asked[atom] = action
         beliefs, watched = self._assuming.beliefs, self._assuming.watched
+        asked = to_ask(self.domain, self._reducer.segments, beliefs)
         done = self._reducer.is_done and not self.impossible  # then nothing asserts what nobody planned
         adaptation = self._issuer.remove_strangers(beliefs, watched) if done else None
         adaptation = adaptation or self._issuer.reconcile(beliefs, watched, asked)
@@ -378,9 +376,8 @@ class Planner:
         segment = self.model.named(name)
         if segment is None or segment.stale:
             return
-        convincing = [d for d in self.diagnoses if d.confidence >= CONVINCING]
-        named = [a for diagnosis in convincing for a in diagnosis.assumptions if a in segment.required]
-        diagnosed = next((a for a in named if self._assuming.fails(a)), None)
+        suspected = (a for a in suspects(self.diagnoses) if a in segment.required and self._assuming.fails(a))
+        diagnosed = next(suspected, None)
         doubtful = diagnosed or self._assuming.least_likely(segment.required)
         if doubtful is not None:
             self._relax(doubtful, "forced", FAILED_ASSUMPTION, number)
@@ -391,9 +388,9 @@ class Planner:
 
     def _told(self, perception: Perception) -> None:
         """An answer to a perception request: plan again what asked for it."""
-        *arguments, verdict = perception.values or ("",)
-        if verdict in ("holds", "fails"):
-            atom = Atom(perception.subject, tuple(arguments))
-            self._assuming.beliefs = self._assuming.beliefs.learning(atom, holds=verdict == "holds")
+        told = answer(perception)
+        if told is not None:
+            atom, holds = told
+            self._assuming.beliefs = self._assuming.beliefs.learning(atom, holds=holds)
             self._issuer.requests.pop(atom, None)
             self._reducer.reconsider(Because("information", str(atom), perception.number), atom)

@@ -59,7 +59,8 @@ class Search:
         """The plan, or None if there is none (or none was found within `NODES` choices)."""
         goals = [Goal(atom, NAMED["equal"], END, n) for n, atom in enumerate(self.problem.goals)]
         found = yield from self._deepen(goals)
-        found = found and self._threats.resolve() and share_out(self.problem.theory.domain, self.plan)
+        found = found and self._threats.resolve()
+        found = found and (yield from share_out(self.problem.theory.domain, self.plan))
         return self.plan if found else None
 
     # ------------------------------------------------------------------------------- control of the search

@@ -16,7 +16,7 @@ import msgspec
 from planner_reactor.logic.allen import inverse
 from planner_reactor.logic.domain import ActionSchema
 from planner_reactor.logic.formulas import Term
-from planner_reactor.planner.plan import BEFORE, CONTAINS, Plan, Result
+from planner_reactor.planner.plan import BEFORE, CONTAINS, Plan, Result, Turn
 
 UNKNOWN = 1000.0
 """Milliseconds that an action is taken to last of which the domain does not say it."""
@@ -131,14 +131,42 @@ class _Order:
 
     def __init__(self, plan: Plan) -> None:
         self._steps = {step.number: action_of(plan, step.number) for step in plan.steps}
-        self.after = dict.fromkeys(self._steps, 0)
+        self.after = dict.fromkeys(self._steps, 0)  # before which others it must have ended
         self._inside = dict.fromkeys(self._steps, 0)
-        self._lasts = {self._steps[step.number]: _lasting(step.schema) for step in plan.steps}
+        self._lasts = {self._steps[step.number]: lasting(step.schema) for step in plan.steps}
         self._levelled: dict[int, Tree] = {}
         for first, second, relation in plan.network.edges():
             if isinstance(first, int) and isinstance(second, int) and {first, second} <= self._steps.keys():
                 self._note(first, second, relation)
                 self._note(second, first, inverse(relation))
+        self._needed = self.after if not plan.turns else dict(self.after)
+        self._take_turns(plan.turns)
+
+    def _take_turns(self, turns: Sequence[Turn]) -> None:
+        """Who has a resource first goes before who has it next, and before all that wait for that."""
+        following: dict[int, int] = {}
+        for first, second in turns:
+            following[first] = following.get(first, 0) | 1 << second
+        if following:
+            closed: dict[int, int] = {}
+            for number in self.after:
+                self._close(number, following, closed)
+            self.after = closed
+
+    def _close(self, number: int, following: Mapping[int, int], closed: dict[int, int]) -> None:
+        """`closed[number]`: all that comes after it, turn by turn; without recursion, chains may be long."""
+        waiting = [number]
+        while waiting:
+            n = waiting[-1]
+            direct = self.after[n] | following.get(n, 0)
+            missing = [m for m in _numbers(direct) if m not in closed]
+            if missing:
+                waiting.extend(missing)
+                continue
+            waiting.pop()
+            for m in _numbers(direct):
+                direct |= closed[m]
+            closed[n] = direct
 
     def _note(self, first: int, second: int, relation: int) -> None:
         if relation & ~BEFORE == 0:
@@ -158,7 +186,7 @@ class _Order:
         return _in_order([self.arrange(first, {}), choice])
 
     def _before(self, number: int, numbers: Sequence[int]) -> list[int]:
-        return [n for n in numbers if self.after[n] >> number & 1]
+        return [n for n in numbers if self._needed[n] >> number & 1]
 
     # ------------------------------------------------------------------------------- series and parallel
 
@@ -183,21 +211,19 @@ class _Order:
         return blocks
 
     def _composed(self, blocks: list[_Block]) -> Tree:
-        if len(blocks) < 2:
-            return blocks[0].tree if blocks else NOTHING
-        parallel = _components(blocks)
-        if len(parallel) > 1:
-            return Together(tuple(self._composed(part) for part in parallel))
-        ranked = sorted(blocks, key=lambda block: -block.after.bit_count())
-        common, rest = -1, _members(ranked)
-        for block in ranked[:-1]:
-            common &= block.after
-            rest &= ~block.members
-            if rest & ~common == 0:
-                early = [block for block in blocks if not block.members & rest]
-                late = [block for block in blocks if block.members & rest]
-                return _in_order([self._composed(early), self._composed(late)])
-        return self._by_levels(blocks)
+        parts: list[Tree] = []
+        while len(blocks) > 1:
+            parallel = _components(blocks)
+            if len(parallel) > 1:
+                return _in_order([*parts, Together(tuple(self._composed(part) for part in parallel))])
+            early, late = _in_series(blocks)
+            if not early and len(blocks) <= MOST_CUT:
+                return _in_order([*parts, self._by_levels(blocks)])
+            if not early:
+                early, late = _cut(blocks, next(_cuts(blocks, _members(blocks))))
+            parts.append(self._composed(early))
+            blocks = late
+        return _in_order([*parts, *(block.tree for block in blocks)]) if parts or blocks else NOTHING
 
     def _by_levels(self, blocks: list[_Block]) -> Tree:
         """Not series-parallel: made stricter by a cut, all before it first; of several cuts the one that takes the
@@ -208,8 +234,7 @@ class _Order:
             return self._levelled[whole]
         trees = []
         for cut in dict.fromkeys(_cuts(blocks, whole)):
-            early = [block for block in blocks if block.members & ~cut == 0]
-            late = [block for block in blocks if block.members & cut == 0]
+            early, late = _cut(blocks, cut)
             if early and late and len(early) + len(late) == len(blocks):
                 trees.append(_in_order([self._composed(early), self._composed(late)]))
         tree = min(trees, key=self.span, default=Together(tuple(block.tree for block in blocks)))
@@ -231,9 +256,10 @@ class _Order:
                 return self._lasts.get(test, UNKNOWN) + max(self.span(then), self.span(otherwise))
 
 
-def _lasting(schema: ActionSchema) -> float:
+def lasting(schema: ActionSchema) -> float:
+    """What an action is taken to last where orders are compared, in milliseconds."""
     if schema.duration is not None:
-        return schema.duration.most
+        return (schema.duration.least + schema.duration.most) / 2
     return 0.0 if schema.senses else UNKNOWN
 
 
@@ -261,25 +287,36 @@ class _Block(msgspec.Struct, frozen=True):
     after: int
 
 
+def _cut(blocks: list[_Block], early: int) -> tuple[list[_Block], list[_Block]]:
+    """The blocks that lie in a set of steps, and those that lie outside it."""
+    return [b for b in blocks if b.members & ~early == 0], [b for b in blocks if b.members & early == 0]
+
+
+def _in_series(blocks: list[_Block]) -> tuple[list[_Block], list[_Block]]:
+    """The fewest blocks that all others wait for, and these; none if there are none such."""
+    ranked = sorted(blocks, key=lambda block: -block.after.bit_count())
+    common, rest = -1, _members(ranked)
+    for block in ranked[:-1]:
+        common &= block.after
+        rest &= ~block.members
+        if rest & ~common == 0:
+            return _cut(blocks, ~rest)
+    return [], blocks
+
+
 def _components(blocks: list[_Block]) -> list[list[_Block]]:
     """The blocks in groups between which nothing is ordered, each in the order given."""
-    owner = {number: n for n, block in enumerate(blocks) for number in _numbers(block.members)}
     present = _members(blocks)
-    leader = list(range(len(blocks)))
-
-    def led_by(n: int) -> int:
-        while leader[n] != n:
-            leader[n] = n = leader[leader[n]]
-        return n
-
+    groups: list[tuple[int, list[int]]] = []
     for n, block in enumerate(blocks):
-        for number in _numbers(block.after & present):
-            one, other = led_by(n), led_by(owner[number])
-            leader[max(one, other)] = min(one, other)
-    found: dict[int, list[_Block]] = {}
-    for n, block in enumerate(blocks):
-        found.setdefault(led_by(n), []).append(block)
-    return list(found.values())
+        reach, numbers, others = block.members | block.after & present, [n], []
+        for group in groups:
+            if group[0] & reach:
+                reach, numbers = reach | group[0], group[1] + numbers
+            else:
+                others.append(group)
+        groups = [*others, (reach, numbers)]
+    return [[blocks[n] for n in sorted(numbers)] for _, numbers in sorted(groups, key=lambda group: min(group[1]))]
 
 
 def _numbers(bits: int) -> Iterator[int]:
