@@ -66,6 +66,15 @@ def test_it_returns_only_after_it_has_held_for_the_hold_on() -> None:
     assert bench.reactor.laws.violations == []
 
 
+def test_a_return_is_read_for_after_a_period_at_the_earliest() -> None:
+    """Or whatever flaps would come back as soon as it was given up, however long its monitor is to wait."""
+    bench = cautious()
+    flag(bench, (2.5, False), (3.2, True))
+    bench.at(3.3, Adaptation(id=3, definitions="P[6] = HOLDMONITOR[A, 8000]", kills=(5,), adds=(6,)))
+    bench.run(20.0)
+    assert told(bench) == [("assumption_failure", 3.0), ("assumption_holds", pytest.approx(11.3, abs=0.1))]
+
+
 def test_unknown_is_no_holding_on() -> None:
     bench = cautious(hold_on=3.0)
     flag(bench, (2.5, False), (4.5, True), (6.5, None), (7.5, True))
@@ -94,7 +103,7 @@ def test_what_failed_before_a_crash_was_told_and_returns_as_it_should() -> None:
     bench = cautious(hold_off=5.0)
     bench.reactor.assumptions.failed["A"] = 0.0  # as a journal has it
     bench.run(3.0)
-    assert told(bench)[0] == ("assumption_holds", 0.1)
+    assert told(bench)[0] == ("assumption_holds", 1.1)
 
 
 # ---------------------------------------------------------------------------------------------------------- flapping

@@ -66,8 +66,9 @@ class Monitors:
                 self._timers[strand] = self._scheduler.call_after(period / 1000, check)
                 self._read(assumption, sense(), returns=reports, fails=not reports)
 
-            # a step may not change the world it belongs to: the first reading is an event of its own
-            self._timers[strand] = self._scheduler.call_after(0.0, check)
+            # A step may not change the world it belongs to: the first reading is an event of its own. What may come
+            # back is read after a period at the earliest: so one that flaps comes back once a period at most.
+            self._timers[strand] = self._scheduler.call_after(period / 1000 if reports else 0.0, check)
             return None
 
         return begin
