@@ -212,9 +212,10 @@ class Planner:
 
         None if there is nothing to do until something is perceived.
         """
+        held = self._gate.held if self._gate is not None else None
         if self._standing.busy:
-            return self._standing.step()
-        if self._gate is not None and self._gate.held is not None:
+            return self._standing.step({adaptation.id for adaptation in held.adaptations} if held else ())
+        if self._gate is not None and held is not None:
             return self._verified(self._gate.look_on(), self._gate)
         step = self._reducer.step() or self._watch() or self._reinstate() or self._relax_next() or self._think_ahead()
         if step is None or self._gate is None or not step.adaptations:

@@ -7,7 +7,7 @@ once more, unchanged and under the same ids: what was applied is acknowledged ag
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Container, Mapping
 from dataclasses import dataclass
 
 from planner_reactor.link.messages import Enquiry, Perception, Standing
@@ -34,8 +34,8 @@ class Standings:
         """Is there nothing to be planned for now?"""
         return self.fenced or self.waits or self._resumption is not None or self._repeats is not None
 
-    def step(self) -> Step | None:
-        """The next piece of work, if there is one."""
+    def step(self, unsent: Container[int] = ()) -> Step | None:
+        """The next piece of work, if there is one; what is `unsent` (held until it is verified) is not repeated."""
         if self.fenced:
             return None
         if self._asks:
@@ -48,7 +48,8 @@ class Standings:
                 self._resumption = None
             return Step("resume", purpose="take over what stands")
         issuer, self._repeats = self._repeats, None
-        again = tuple(flight.adaptation for flight in issuer.under_way.values()) if issuer else ()
+        under_way = issuer.under_way.items() if issuer else ()
+        again = tuple(flight.adaptation for number, flight in under_way if number not in unsent)
         return Step("repeat", adaptations=again, purpose="repeat what was not answered")
 
     def enquire(self, enquirer: int | None = None) -> None:
