@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from math import inf
-from typing import Any
+from typing import Any, get_args
 
 import msgspec
 from msgspec.structs import replace
@@ -19,9 +19,13 @@ from planner_reactor.analysis.discovery import Discovery, Origins, path
 from planner_reactor.rs.configurations import Config, Label, World
 from planner_reactor.rs.leaves import Step, elapsed, slack, steps, window
 from planner_reactor.rs.states import Ended, InstanceNumber, Leaf
+from planner_reactor.rs.terms import Process
 
 Invariant = Callable[[Config, Step], bool]
 """Asked with the configuration before a step and the step: does the law hold?"""
+
+TEXT = frozenset(get_args(Process))
+"""The types of what is text of the program: no instance is in it."""
 
 
 class Violation(msgspec.Struct, frozen=True):
@@ -122,6 +126,8 @@ def renumbered(value: Any, names: Mapping[InstanceNumber, InstanceNumber]) -> An
     """The same value with other instance numbers; those without a name become 0."""
     if isinstance(value, InstanceNumber):
         return names.get(value, InstanceNumber(0))
+    if type(value) in TEXT:
+        return value
     if isinstance(value, tuple):
         return tuple(renumbered(v, names) for v in value)
     if isinstance(value, Ended):

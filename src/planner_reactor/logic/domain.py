@@ -11,11 +11,11 @@ the action's interval to its own.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Literal, TypeVar
 
 import msgspec
+from msgspec.structs import astuple
 
 from planner_reactor.errors import Place
 from planner_reactor.logic.allen import NAMED, relations
@@ -29,8 +29,17 @@ MEETS = NAMED["meets"]
 _T = TypeVar("_T")
 
 
-@dataclass(frozen=True, slots=True)
-class Assumption:
+class _Placed(msgspec.Struct, frozen=True, eq=False):
+    """Something with its place in the text as the last field, which makes no difference to what it is."""
+
+    def __eq__(self, other: object) -> bool:
+        return type(other) is type(self) and astuple(self)[:-1] == astuple(other)[:-1]
+
+    def __hash__(self) -> int:
+        return hash(astuple(self)[:-1])
+
+
+class Assumption(_Placed, frozen=True):
     """A temporal predicate that is taken to hold until there is evidence against it (R §7.4, §8.2).
 
     `likelihood` of holding gives the order of relaxation. `monitor` is `flag` (checked every `period_ms`)
@@ -44,7 +53,7 @@ class Assumption:
     monitor: Literal["flag", "reaction"] = "flag"
     period_ms: int = 2000
     reinstatable: bool = False
-    place: Place | None = field(default=None, compare=False, repr=False)
+    place: Place | None = None
 
 
 class Condition(msgspec.Struct, frozen=True):
@@ -63,8 +72,7 @@ class Effect(msgspec.Struct, frozen=True):
     relation: int = MEETS
 
 
-@dataclass(frozen=True, slots=True)
-class Rule:
+class Rule(_Placed, frozen=True):
     """`body and assumptions => head`; each condition's relation leads from its interval to the head's.
 
     `distinct` are pairs of terms that must differ.
@@ -75,11 +83,10 @@ class Rule:
     assumptions: tuple[Atom, ...]
     distinct: tuple[tuple[Term, Term], ...]
     size: int
-    place: Place | None = field(default=None, compare=False, repr=False)
+    place: Place | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class Exclusion:
+class Exclusion(_Placed, frozen=True):
     """`first @ i and second @ j and … => ITL(i, disjunct, j)`: the two never hold together (R Fig. 6).
 
     `given` are further atoms that must hold beside one of the two, `distinct` pairs of terms that must
@@ -91,11 +98,10 @@ class Exclusion:
     given: tuple[Atom, ...]
     distinct: tuple[tuple[Term, Term], ...]
     size: int
-    place: Place | None = field(default=None, compare=False, repr=False)
+    place: Place | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class Persistence:
+class Persistence(_Placed, frozen=True):
     """An atom that lasts only as long as the assumptions hold; what is not named lasts until something
     excludes it.
     """
@@ -103,7 +109,7 @@ class Persistence:
     atom: Atom
     assumptions: tuple[Atom, ...]
     size: int
-    place: Place | None = field(default=None, compare=False, repr=False)
+    place: Place | None = None
 
 
 class Duration(msgspec.Struct, frozen=True):
@@ -113,8 +119,7 @@ class Duration(msgspec.Struct, frozen=True):
     most: float
 
 
-@dataclass(frozen=True, slots=True)
-class Resource:
+class Resource(_Placed, frozen=True):
     """What only so many can use at one time: a crane, a tap, the places of a shelf (then with parameters:
     each shelf has places of its own).
     """
@@ -122,7 +127,7 @@ class Resource:
     name: str
     parameters: int = 0
     capacity: int = 1
-    place: Place | None = field(default=None, compare=False, repr=False)
+    place: Place | None = None
 
 
 class Demand(msgspec.Struct, frozen=True):
@@ -132,8 +137,7 @@ class Demand(msgspec.Struct, frozen=True):
     amount: int = 1
 
 
-@dataclass(frozen=True, slots=True)
-class ActionSchema:
+class ActionSchema(_Placed, frozen=True):
     """An action: basic if `expansions` is empty (a process that the reactor can run), abstract
     otherwise (Fig. 5).
 
@@ -160,7 +164,7 @@ class ActionSchema:
     cleanup: bool = False
     duration: Duration | None = None
     uses: tuple[Demand, ...] = ()
-    place: Place | None = field(default=None, compare=False, repr=False)
+    place: Place | None = None
 
     @property
     def abstract(self) -> bool:
@@ -172,8 +176,7 @@ class ActionSchema:
         return len(self.variables)
 
 
-@dataclass(frozen=True, slots=True)
-class Goal:
+class Goal(_Placed, frozen=True):
     """`forall …: antecedent => Exists …: consequent`, R (13). `lasting` atoms must hold to the end of
     time.
     """
@@ -183,7 +186,7 @@ class Goal:
     consequent: tuple[Atom, ...]
     lasting: tuple[bool, ...]
     size: int
-    place: Place | None = field(default=None, compare=False, repr=False)
+    place: Place | None = None
 
 
 class Domain:

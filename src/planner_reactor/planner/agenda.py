@@ -7,9 +7,10 @@ dropped when they come up, so that nothing here depends on how many situations t
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from heapq import heappop, heappush
 from typing import TypeAlias
+
+import msgspec
 
 from planner_reactor.planner.model import Model, Segment
 from planner_reactor.planner.situations import Situation
@@ -19,14 +20,13 @@ FAILED_SITUATION, FAILED_ASSUMPTION, ACTIVE_STUB, QUIESCENT = range(4)
 _Entry: TypeAlias = tuple[int, tuple[int, ...], int, Situation]
 
 
-@dataclass(slots=True)
-class Agenda:
+class Agenda(msgspec.Struct, eq=False):
     """The open segments of a model, the most urgent first."""
 
     model: Model
-    _entries: list[_Entry] = field(default_factory=list)
-    _aside: dict[int, list[_Entry]] = field(default_factory=dict)
-    _holders: dict[Situation, int] = field(default_factory=dict)
+    _entries: list[_Entry] = msgspec.field(default_factory=list)
+    _aside: dict[int, list[_Entry]] = msgspec.field(default_factory=dict)
+    _holders: dict[Situation, int] = msgspec.field(default_factory=dict)
     _count: int = 0
 
     def push(self, segment: Segment) -> None:

@@ -12,7 +12,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+
+import msgspec
 
 from planner_reactor.logic.domain import Domain
 from planner_reactor.planner.model import Segment
@@ -42,11 +43,10 @@ def unlikelihood(domain: Domain, relaxed: Iterable[str]) -> float:
     return total
 
 
-@dataclass(slots=True)
-class Convergence:
+class Convergence(msgspec.Struct, eq=False):
     """Watches one planner; `breaches` say where it did not get nearer to its end."""
 
-    breaches: list[str] = field(default_factory=list)
+    breaches: list[str] = msgspec.field(default_factory=list)
 
     def reduced(self, closed: Segment, opened: Iterable[Segment]) -> None:
         """A situation was closed, others were opened: they must lie below it (11)."""

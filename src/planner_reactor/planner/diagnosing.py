@@ -10,7 +10,8 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+
+import msgspec
 
 from planner_reactor.logic.diagnosis import Diagnosis, Record, diagnose
 from planner_reactor.planner.beliefs import Beliefs, in_doubt
@@ -24,12 +25,11 @@ CONVINCING = 0.5
 """The confidence from which on a diagnosis counts as a failed assumption, should the planner have to give one up."""
 
 
-@dataclass(slots=True)
-class Diagnosing:
+class Diagnosing(msgspec.Struct, eq=False):
     """Counts failures by situation, since the reactor was last changed for an assumption."""
 
-    failures: Counter[str] = field(default_factory=Counter)
-    blind: set[str] = field(default_factory=set)  # assumptions of which sensors say nothing of worth
+    failures: Counter[str] = msgspec.field(default_factory=Counter)
+    blind: set[str] = msgspec.field(default_factory=set)  # assumptions of which sensors say nothing of worth
 
     def failed(self, situation: str, count: int = 1) -> None:
         self.failures[situation] += count

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+import msgspec
 
 from planner_reactor.planner.beliefs import Beliefs
 from planner_reactor.planner.memory import Key
@@ -11,8 +11,7 @@ from planner_reactor.planner.situations import Context, Refinement, Situation
 from planner_reactor.planner.thinking import Work
 
 
-@dataclass(slots=True)
-class Draft:
+class Draft(msgspec.Struct, eq=False):
     """Work on one segment. `waiting` sub-situations are refined before it is issued.
 
     A sub-situation that turns out to be impossible is `avoided` where it is called; a situation for which
@@ -22,12 +21,12 @@ class Draft:
     segment: Segment
     purpose: str
     assumption: str = ""
-    drafted: Drafted = field(default_factory=Drafted)
-    waiting: list[Situation] = field(default_factory=list)
-    avoided: dict[Situation, frozenset[str]] = field(default_factory=dict)
-    settled: set[Situation] = field(default_factory=set)
-    left: set[Situation] = field(default_factory=set)
-    contexts: dict[Situation, tuple[Context, Beliefs]] = field(default_factory=dict)  # what refinements depended on
+    drafted: Drafted = msgspec.field(default_factory=Drafted)
+    waiting: list[Situation] = msgspec.field(default_factory=list)
+    avoided: dict[Situation, frozenset[str]] = msgspec.field(default_factory=dict)
+    settled: set[Situation] = msgspec.field(default_factory=set)
+    left: set[Situation] = msgspec.field(default_factory=set)
+    contexts: dict[Situation, tuple[Context, Beliefs]] = msgspec.field(default_factory=dict)  # what each rests on
     thought: tuple[Key, Work[Refinement]] | None = None  # what is being worked out
 
     def __post_init__(self) -> None:

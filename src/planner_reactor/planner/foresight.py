@@ -9,7 +9,8 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+
+import msgspec
 
 from planner_reactor.planner.beliefs import Beliefs
 from planner_reactor.planner.issuing import Issuer
@@ -19,12 +20,11 @@ from planner_reactor.planner.reducing import Reducer
 from planner_reactor.planner.relaxing import Assuming
 
 
-@dataclass(slots=True)
-class Foresight:
+class Foresight(msgspec.Struct, eq=False):
     """Plans for what `reducer` may have to plan next; `foreseen` are the beliefs that it has planned for."""
 
     reducer: Reducer
-    foreseen: set[Beliefs] = field(default_factory=set)
+    foreseen: set[Beliefs] = msgspec.field(default_factory=set)
     _shadow: Reducer | None = None
     _about: str = ""
 

@@ -9,7 +9,6 @@ the situations that it touches are held back.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 
 import msgspec
 
@@ -56,43 +55,41 @@ class Difference(msgspec.Struct, frozen=True):
     gone: tuple[Segment, ...]
 
 
-@dataclass(slots=True)
-class _Parts:
+class _Parts(msgspec.Struct, eq=False):
     """What one adaptation consists of, while it is put together."""
 
-    clauses: dict[int, str] = field(default_factory=dict)
-    kills: list[int] = field(default_factory=list)
-    changes: list[Change] = field(default_factory=list)
-    removed: list[str] = field(default_factory=list)
-    adds: list[int] = field(default_factory=list)  # top-down
+    clauses: dict[int, str] = msgspec.field(default_factory=dict)
+    kills: list[int] = msgspec.field(default_factory=list)
+    changes: list[Change] = msgspec.field(default_factory=list)
+    removed: list[str] = msgspec.field(default_factory=list)
+    adds: list[int] = msgspec.field(default_factory=list)  # top-down
     given_up: tuple[str, ...] = ()
-    strangers: dict[int, Stranger] = field(default_factory=dict)
+    strangers: dict[int, Stranger] = msgspec.field(default_factory=dict)
 
 
-@dataclass(slots=True)
 class Issuer:
     """Issues adaptations for a model; `under_way` holds those that the reactor has not answered."""
 
-    model: Model
-    fold: bool
-    stub_ms: int
-    period_ms: int | None
-    mode: Mode
-    epoch: int = 0
-    next_label: int = 0
-    next_id: int = 1
-    monitors: dict[Monitor, int] = field(default_factory=dict)
-    requests: dict[Atom, int] = field(default_factory=dict)
-    under_way: dict[int, UnderWay] = field(default_factory=dict)
-    introduced: list[Segment] = field(default_factory=list)  # by the last issue, and still stubs
-    refused_alone: int = 0  # adaptations of no situation that were not applied, in a row
-    sheets: Sheets = field(init=False)
-    strays: list[int] = field(default_factory=list)  # monitors that were to be removed, and are still there
-    strangers: dict[int, Stranger] = field(default_factory=dict)  # by label, top-down
-    _watched: object = None  # for which assumptions the monitors are as they should be
-
-    def __post_init__(self) -> None:
-        self.sheets = Sheets(self.model.names, self.fold)
+    def __init__(
+        self, model: Model, fold: bool, stub_ms: int, period_ms: int | None, mode: Mode, epoch: int = 0
+    ) -> None:
+        self.model = model
+        self.fold = fold
+        self.stub_ms = stub_ms
+        self.period_ms = period_ms
+        self.mode: Mode = mode
+        self.epoch = epoch
+        self.next_label = 0
+        self.next_id = 1
+        self.monitors: dict[Monitor, int] = {}
+        self.requests: dict[Atom, int] = {}
+        self.under_way: dict[int, UnderWay] = {}
+        self.introduced: list[Segment] = []  # by the last issue, and still stubs
+        self.refused_alone = 0  # adaptations of no situation that were not applied, in a row
+        self.sheets = Sheets(model.names, fold)
+        self.strays: list[int] = []  # monitors that were to be removed, and are still there
+        self.strangers: dict[int, Stranger] = {}  # by label, top-down
+        self._watched: object = None  # for which assumptions the monitors are as they should be
 
     # ------------------------------------------------------------------------------------- what may go out
 

@@ -8,8 +8,9 @@ exchanged.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from typing import TypeAlias
+
+import msgspec
 
 from planner_reactor.logic.formulas import Atom, Term
 from planner_reactor.planner.beliefs import Beliefs, told_apart
@@ -21,13 +22,12 @@ MOST = 20_000
 """So many refinements are kept; then all are forgotten."""
 
 
-@dataclass(slots=True)
-class Memory:
+class Memory(msgspec.Struct, eq=False):
     """Remembers refinements for one theory; `worked_out` counts those that were not remembered."""
 
     theory: Theory
     worked_out: int = 0
-    _known: dict[Key, list[Refinement]] = field(default_factory=dict)
+    _known: dict[Key, list[Refinement]] = msgspec.field(default_factory=dict)
     _count: int = 0
 
     def key(self, situation: Situation, context: Context, beliefs: Beliefs) -> Key:

@@ -9,7 +9,6 @@ found, with the reason.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
 
 import msgspec
 from msgspec.structs import replace
@@ -70,12 +69,11 @@ class Segment(msgspec.Struct):
         return (self.is_stub or self.stale) and not self.impossible
 
 
-@dataclass(slots=True)
-class Drafted:
+class Drafted(msgspec.Struct, eq=False):
     """Refinements that are not in the model yet, and who calls what in them."""
 
-    refinements: dict[Situation, Refinement] = field(default_factory=dict)
-    calls: dict[Situation, dict[Situation, list[Child]]] = field(default_factory=dict)
+    refinements: dict[Situation, Refinement] = msgspec.field(default_factory=dict)
+    calls: dict[Situation, dict[Situation, list[Child]]] = msgspec.field(default_factory=dict)
 
     def add(self, refinement: Refinement) -> None:
         self.refinements[refinement.situation] = refinement
@@ -83,17 +81,16 @@ class Drafted:
             self.calls.setdefault(child.situation, {}).setdefault(refinement.situation, []).append(child)
 
 
-@dataclass(slots=True)
-class Model:
+class Model(msgspec.Struct, eq=False):
     """All segments, in the order in which they came up. `roots` are the goals, with the labels of what asserts them."""
 
-    roots: dict[Situation, int | None] = field(default_factory=dict)
-    names: Names = field(default_factory=Names)
-    segments: dict[Situation, Segment] = field(default_factory=dict)
-    uses: dict[str, int] = field(default_factory=dict)  # assumption → segments that rest on it or bring it in
-    former: Mapping[str, int] = field(default_factory=dict)  # versions of what stood before this model, by name
-    _calls: dict[Situation, dict[Situation, tuple[Child, ...]]] = field(default_factory=dict)
-    _versions: dict[Situation, int] = field(default_factory=dict)
+    roots: dict[Situation, int | None] = msgspec.field(default_factory=dict)
+    names: Names = msgspec.field(default_factory=Names)
+    segments: dict[Situation, Segment] = msgspec.field(default_factory=dict)
+    uses: dict[str, int] = msgspec.field(default_factory=dict)  # assumption → segments that rest on it or bring it in
+    former: Mapping[str, int] = msgspec.field(default_factory=dict)  # versions of what stood before this model, by name
+    _calls: dict[Situation, dict[Situation, tuple[Child, ...]]] = msgspec.field(default_factory=dict)
+    _versions: dict[Situation, int] = msgspec.field(default_factory=dict)
 
     def __iter__(self) -> Iterator[Segment]:
         return iter(self.segments.values())

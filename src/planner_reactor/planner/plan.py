@@ -11,7 +11,6 @@ Legend: START stands for what holds when the situation is asserted, END for the 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
 from typing import TypeAlias
 
 import msgspec
@@ -95,20 +94,19 @@ class Use(msgspec.Struct, frozen=True):
     about: Atom | None = None
 
 
-@dataclass(slots=True)
-class Plan:
+class Plan(msgspec.Struct, eq=False):
     """The mutable state of a search. Its steps count from `first`, so that plans that follow each
     other differ. A finished plan has the `turns` of steps that share resources (`sharing`).
     """
 
-    bindings: Bindings = field(default_factory=Bindings)
-    network: Network = field(default_factory=Network)
-    steps: list[Step] = field(default_factory=list)
-    links: list[Link] = field(default_factory=list)
-    uses: list[Use] = field(default_factory=list)
-    distinct: list[tuple[Term, Term]] = field(default_factory=list)
-    turns: list[Turn] = field(default_factory=list)
-    assumed: list[Atom] = field(default_factory=list)  # assumptions whose arguments were still open
+    bindings: Bindings = msgspec.field(default_factory=Bindings)
+    network: Network = msgspec.field(default_factory=Network)
+    steps: list[Step] = msgspec.field(default_factory=list)
+    links: list[Link] = msgspec.field(default_factory=list)
+    uses: list[Use] = msgspec.field(default_factory=list)
+    distinct: list[tuple[Term, Term]] = msgspec.field(default_factory=list)
+    turns: list[Turn] = msgspec.field(default_factory=list)
+    assumed: list[Atom] = msgspec.field(default_factory=list)  # assumptions whose arguments were still open
     variables: int = 0
     first: int = 0
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 
 import msgspec
 
@@ -56,14 +55,13 @@ class Problem(msgspec.Struct, frozen=True):
         return goal.consumer == END and goal.condition >= len(self.goals) - self.kept
 
 
-@dataclass(slots=True)
-class Consulted:
+class Consulted(msgspec.Struct, eq=False):
     """What a search would have needed: relaxed assumptions, unknown conditions, schemas that stand too high.
 
     `gave_up`: it ended before everything was tried.
     """
 
-    missing: set[str] = field(default_factory=set)
-    asked: dict[Atom, None] = field(default_factory=dict)
-    blocked: set[str] = field(default_factory=set)
+    missing: set[str] = msgspec.field(default_factory=set)
+    asked: dict[Atom, None] = msgspec.field(default_factory=dict)
+    blocked: set[str] = msgspec.field(default_factory=set)
     gave_up: bool = False

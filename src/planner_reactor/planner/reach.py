@@ -8,7 +8,6 @@ lower, it is noted as missing: if it is reinstated, another plan may win.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, field
 from typing import TypeAlias
 
 from planner_reactor.logic.domain import Rule
@@ -20,20 +19,16 @@ NEVER = 1 << 30
 _Bounds: TypeAlias = dict[str, int]
 
 
-@dataclass(slots=True)
 class Reach:
     """Lower bounds for one problem; they are shared by all problems that have the same predicates to
     begin with.
     """
 
-    problem: Problem
-    consulted: Consulted
-    _here: _Bounds = field(init=False)
-    _best: _Bounds = field(init=False)
-
-    def __post_init__(self) -> None:
-        problem = self.problem
+    def __init__(self, problem: Problem, consulted: Consulted) -> None:
+        self.problem = problem
+        self.consulted = consulted
         known = {truth.atom.predicate for truth in problem.truths}
+        known |= {atom.predicate for atom in problem.upheld}
         known |= {atom.predicate for atom, holds in problem.beliefs.told if holds}
         given = frozenset(known) | problem.theory.lasting_facts
         self._here = _bounds(problem.theory, given, problem.forbidden, problem.beliefs.relaxed)

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable
-from dataclasses import dataclass, field
 
 from msgspec.structs import replace
 
@@ -38,30 +37,34 @@ UNITS = 24
 """So much work is done in one step (see `thinking`)."""
 
 
-@dataclass(slots=True)
 class Reducer:
     """Brings the model in line with the goals and the assumptions held. `starts` are goals that are not in the
     model yet, `leaving` those that are to go.
     """
 
-    theory: Theory
-    model: Model
-    issuer: Issuer
-    assuming: Assuming
-    counts: Counter[str]
-    convergence: Convergence = field(default_factory=Convergence)
-    records: dict[int, Record] = field(default_factory=dict)  # of the last adaptations, to be explained
-    memory: Memory = field(init=False)
-    starts: dict[Situation, Segment] = field(default_factory=dict)
-    leaving: dict[Situation, Because] = field(default_factory=dict)
-    _roots: dict[Situation, ActionSchema] = field(default_factory=dict)
-    _refused: dict[Situation, int] = field(default_factory=dict)  # how often a goal was, before it was issued
-    _agenda: Agenda = field(init=False)
-    _draft: Draft | None = None
-
-    def __post_init__(self) -> None:
-        self.memory = Memory(self.theory)
-        self._agenda = Agenda(self.model)
+    def __init__(
+        self,
+        theory: Theory,
+        model: Model,
+        issuer: Issuer,
+        assuming: Assuming,
+        counts: Counter[str],
+        convergence: Convergence | None = None,
+    ) -> None:
+        self.theory = theory
+        self.model = model
+        self.issuer = issuer
+        self.assuming = assuming
+        self.counts = counts
+        self.convergence = convergence or Convergence()
+        self.records: dict[int, Record] = {}  # of the last adaptations, to be explained
+        self.memory = Memory(theory)
+        self.starts: dict[Situation, Segment] = {}
+        self.leaving: dict[Situation, Because] = {}
+        self._roots: dict[Situation, ActionSchema] = {}
+        self._refused: dict[Situation, int] = {}  # how often a goal was, before it was issued
+        self._agenda = Agenda(model)
+        self._draft: Draft | None = None
 
     @property
     def has_begun(self) -> bool:

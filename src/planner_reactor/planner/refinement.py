@@ -10,8 +10,8 @@ always give the same refinement, so that planning in increments and planning ane
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
 
+import msgspec
 from msgspec.structs import replace
 
 from planner_reactor.logic.domain import ActionSchema
@@ -46,8 +46,7 @@ def refining(
     return Refining(theory, beliefs, schema, situation, context, fold).run()
 
 
-@dataclass(slots=True)
-class Refining:
+class Refining(msgspec.Struct, eq=False):
     """One refinement being worked out; `plans` are those behind it, the first its own, others of branches."""
 
     theory: Theory
@@ -56,15 +55,15 @@ class Refining:
     situation: Situation
     context: Context
     fold: bool
-    consulted: Consulted = field(default_factory=Consulted)
-    required: set[str] = field(default_factory=set)
-    presumed: set[str] = field(default_factory=set)
-    children: list[Child] = field(default_factory=list)
-    outputs: list[tuple[Term, ...]] = field(default_factory=list)
-    cleanup: dict[Action, None] = field(default_factory=dict)
-    upsets: set[Action] = field(default_factory=set)
-    warnings: list[str] = field(default_factory=list)
-    plans: list[tuple[Problem, Plan]] = field(default_factory=list)
+    consulted: Consulted = msgspec.field(default_factory=Consulted)
+    required: set[str] = msgspec.field(default_factory=set)
+    presumed: set[str] = msgspec.field(default_factory=set)
+    children: list[Child] = msgspec.field(default_factory=list)
+    outputs: list[tuple[Term, ...]] = msgspec.field(default_factory=list)
+    cleanup: dict[Action, None] = msgspec.field(default_factory=dict)
+    upsets: set[Action] = msgspec.field(default_factory=set)
+    warnings: list[str] = msgspec.field(default_factory=list)
+    plans: list[tuple[Problem, Plan]] = msgspec.field(default_factory=list)
     numbered: int = 0  # steps of all plans so far
 
     def run(self) -> Work[Refinement]:

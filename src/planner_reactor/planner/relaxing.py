@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
 from types import MappingProxyType
 
 from msgspec.structs import replace
@@ -23,23 +22,19 @@ from planner_reactor.planner.steps import Cause, Relax, Relaxation
 MOST_DOUBLINGS = 6
 
 
-@dataclass(slots=True)
 class Assuming:
     """The assumptions of one planner. `beliefs` are what it plans with, `records` what became of
     assumptions.
     """
 
-    domain: Domain
-    relax: Relax
-    beliefs: Beliefs = field(init=False)
-    records: list[Relaxation] = field(default_factory=list)
-    _causes: dict[str, Cause] = field(default_factory=dict)
-    _returning: dict[str, None] = field(default_factory=dict)
-    _returns: Counter[str] = field(default_factory=Counter)
-
-    def __post_init__(self) -> None:
-        self.relax = _checked(self.domain, self.relax)
-        self.beliefs = Beliefs(self.domain)
+    def __init__(self, domain: Domain, relax: Relax) -> None:
+        self.domain = domain
+        self.relax = _checked(domain, relax)
+        self.beliefs = Beliefs(domain)
+        self.records: list[Relaxation] = []
+        self._causes: dict[str, Cause] = {}
+        self._returning: dict[str, None] = {}
+        self._returns: Counter[str] = Counter()
 
     @property
     def causes(self) -> Mapping[str, Cause]:

@@ -11,7 +11,6 @@ All this happens in short steps, in an epoch of its own, while the reactor goes 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
 
 from msgspec.structs import replace
 
@@ -75,22 +74,19 @@ class Reactions:
         return [reaction for reaction in reversed(done) if reaction in wanted]
 
 
-@dataclass(slots=True)
 class Resumption:
     """Brings the model of `reducer`, which has issued nothing, in line with what stands."""
 
-    reducer: Reducer
-    standing: Standing
-    _reactions: Reactions = field(init=False)
-    _shadow: Reducer | None = None
-    _beliefs: Beliefs | None = None
-
-    def __post_init__(self) -> None:
-        self._reactions = Reactions(self.standing.clauses)
-        issuer, model = self.reducer.issuer, self.reducer.model
-        issuer.epoch, issuer.next_label = self.standing.epoch, self.standing.highest_label + 1
-        model.former = self.standing.versions
-        self.reducer.assuming.take_over(self.standing.given_up, self.standing.failed, self._reactions.watched)
+    def __init__(self, reducer: Reducer, standing: Standing) -> None:
+        self.reducer = reducer
+        self.standing = standing
+        self._reactions = Reactions(standing.clauses)
+        self._shadow: Reducer | None = None
+        self._beliefs: Beliefs | None = None
+        issuer, model = reducer.issuer, reducer.model
+        issuer.epoch, issuer.next_label = standing.epoch, standing.highest_label + 1
+        model.former = standing.versions
+        reducer.assuming.take_over(standing.given_up, standing.failed, self._reactions.watched)
 
     def step(self) -> bool:
         """One short piece of work; False if that was the last."""

@@ -9,7 +9,6 @@ Ties go to what `supports` tries first. A search that is not done after `NODES` 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass, field
 from typing import TypeAlias
 
 from planner_reactor.logic.allen import NAMED
@@ -34,26 +33,21 @@ Agenda: TypeAlias = "tuple[Goal, Agenda] | None"
 _Choice: TypeAlias = tuple[tuple[int, ...], Agenda, Iterator[Way]]
 
 
-@dataclass(slots=True)
 class Search:
     """One search. `solve` once; `consulted` then tells what it would have needed beside what the plan
     uses.
     """
 
-    problem: Problem
-    plan: Plan = field(default_factory=Plan)
-    consulted: Consulted = field(default_factory=Consulted)
-    nodes: int = 0
-    _supports: Supports = field(init=False)
-    _threats: Threats = field(init=False)
-    _reach: Reach = field(init=False)
-    _cheapest: int = NEVER  # of what was found too dear
-
-    def __post_init__(self) -> None:
-        self.plan.variables = max(self.plan.variables, self.problem.variables)
-        self._supports = Supports(self.problem, self.plan, self.consulted)
-        self._threats = Threats(self.problem, self.plan)
-        self._reach = Reach(self.problem, self.consulted)
+    def __init__(self, problem: Problem, plan: Plan, consulted: Consulted) -> None:
+        self.problem = problem
+        self.plan = plan
+        self.consulted = consulted
+        self.nodes = 0
+        plan.variables = max(plan.variables, problem.variables)
+        self._supports = Supports(problem, plan, consulted)
+        self._threats = Threats(problem, plan)
+        self._reach = Reach(problem, consulted)
+        self._cheapest = NEVER  # of what was found too dear
 
     def solve(self) -> Work[Plan | None]:
         """The plan, or None if there is none (or none was found within `NODES` choices)."""

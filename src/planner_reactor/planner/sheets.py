@@ -8,7 +8,6 @@ what a further reaction costs does not depend on how long it is to write.
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, field
 from typing import TypeAlias
 
 import msgspec
@@ -74,14 +73,13 @@ class _Lettering:
         return Sheet("%s".join(literals[::2]), tuple(self._holes), places)
 
 
-@dataclass(slots=True)
-class Sheets:
+class Sheets(msgspec.Struct, eq=False):
     """Writes reactions; the sheets of refinements that came up are kept."""
 
     names: Names
     fold: bool
-    _reactions: dict[int, tuple[Composition, Sheet]] = field(default_factory=dict)
-    _stubs: dict[tuple[int, int], Sheet] = field(default_factory=dict)
+    _reactions: dict[int, tuple[Composition, Sheet]] = msgspec.field(default_factory=dict)
+    _stubs: dict[tuple[int, int], Sheet] = msgspec.field(default_factory=dict)
 
     def share(self, other: Sheets) -> None:
         """Use the sheets of another, which may have other names."""

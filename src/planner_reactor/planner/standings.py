@@ -8,7 +8,8 @@ once more, unchanged and under the same ids: what was applied is acknowledged ag
 from __future__ import annotations
 
 from collections.abc import Container, Mapping
-from dataclasses import dataclass
+
+import msgspec
 
 from planner_reactor.link.messages import Enquiry, Perception, Standing
 from planner_reactor.planner.issuing import Issuer
@@ -18,8 +19,7 @@ from planner_reactor.planner.steps import Step
 ANSWERS = frozenset({"adaptation_applied", "adaptation_refused", "adaptation_timed_out"})
 
 
-@dataclass(slots=True)
-class Standings:
+class Standings(msgspec.Struct, eq=False):
     """What one planner has to do with a standing reactor before it can plan."""
 
     fenced: bool = False

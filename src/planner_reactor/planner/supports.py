@@ -9,9 +9,10 @@ after all; the caller undoes what it left.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass, field
 from functools import partial
 from typing import TypeAlias
+
+import msgspec
 
 from planner_reactor.logic.allen import compose, relations
 from planner_reactor.logic.domain import ActionSchema, Effect, Rule
@@ -26,13 +27,12 @@ _EARLIER = relations(["b", "m", "o", "s", "d"])
 """The interval of a condition may end before that of its user, or that of an action before its effect's."""
 
 
-@dataclass(slots=True)
-class Supports:
+class Supports(msgspec.Struct, eq=False):
     """Extends `plan` for `problem`; what it misses is noted in `consulted`."""
 
     problem: Problem
     plan: Plan
-    consulted: Consulted = field(default_factory=Consulted)
+    consulted: Consulted = msgspec.field(default_factory=Consulted)
 
     def ways(self, goal: Goal, affords: Callable[[ActionSchema], bool]) -> Iterator[Way]:
         """Every way to support the goal; by new steps only of actions that can be afforded."""

@@ -10,15 +10,15 @@ must be idempotent).
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+
+import msgspec
 
 from planner_reactor.logic.formulas import Atom, Bindings, Numeral
 from planner_reactor.planner.plan import BEFORE, END, NOT_LATER, START, Link, Parameter, Plan, Step
 from planner_reactor.planner.problem import Problem
 
 
-@dataclass(slots=True)
-class Threats:
+class Threats(msgspec.Struct, eq=False):
     """Finds and resolves the threats to the links of a plan."""
 
     problem: Problem

@@ -6,8 +6,9 @@ situations were changed again meanwhile is refused as stale.
 
 from __future__ import annotations
 
-import dataclasses
 from collections.abc import Sequence
+
+from msgspec.structs import replace
 
 from planner_reactor.errors import InputError
 from planner_reactor.link.messages import Adaptation, Change
@@ -48,7 +49,7 @@ def _rests(before: Committed, change: Change) -> tuple[str, ...]:
 
 def _relabelled(clause: str, label: int) -> str:
     (schema,) = parse_program(clause).schemas
-    return show(dataclasses.replace(schema, head=(Number(label),)))
+    return show(replace(schema, head=(Number(label),)))
 
 
 def together(adaptations: Sequence[Adaptation], *, number: int) -> Adaptation:

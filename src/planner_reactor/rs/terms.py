@@ -12,7 +12,6 @@ and `printer`.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, field
 from typing import TypeAlias
 
 import msgspec
@@ -37,20 +36,30 @@ class Text(msgspec.Struct, frozen=True):
     value: str
 
 
-@dataclass(frozen=True, slots=True)
-class Symbol:
+class Symbol(msgspec.Struct, frozen=True, eq=False):
     """A name that nothing binds: a constant, a port, a situation."""
 
     name: str
-    place: Place | None = field(default=None, compare=False, repr=False)
+    place: Place | None = None
+
+    def __eq__(self, other: object) -> bool:
+        return type(other) is Symbol and self.name == other.name
+
+    def __hash__(self) -> int:
+        return hash(self.name)
 
 
-@dataclass(frozen=True, slots=True)
-class Variable:
+class Variable(msgspec.Struct, frozen=True, eq=False):
     """A name bound by a parameter or by the result of an earlier process."""
 
     name: str
-    place: Place | None = field(default=None, compare=False, repr=False)
+    place: Place | None = None
+
+    def __eq__(self, other: object) -> bool:
+        return type(other) is Variable and self.name == other.name
+
+    def __hash__(self) -> int:
+        return hash(self.name)
 
 
 class Negative(msgspec.Struct, frozen=True):
@@ -65,13 +74,18 @@ class Operation(msgspec.Struct, frozen=True):
     right: Expression
 
 
-@dataclass(frozen=True, slots=True)
-class Apply:
+class Apply(msgspec.Struct, frozen=True, eq=False):
     """A pure function that the host registered, applied to arguments."""
 
     function: str
     arguments: tuple[Expression, ...]
-    place: Place | None = field(default=None, compare=False, repr=False)
+    place: Place | None = None
+
+    def __eq__(self, other: object) -> bool:
+        return type(other) is Apply and (self.function, self.arguments) == (other.function, other.arguments)
+
+    def __hash__(self) -> int:
+        return hash((self.function, self.arguments))
 
 
 Expression: TypeAlias = Number | Text | Symbol | Variable | Negative | Operation | Apply
@@ -80,14 +94,23 @@ Expression: TypeAlias = Number | Text | Symbol | Variable | Negative | Operation
 # ------------------------------------------------------------------------------------------------ processes
 
 
-@dataclass(frozen=True, slots=True)
-class Call:
+class Call(msgspec.Struct, frozen=True, eq=False):
     """`Name[arguments]<results>`: an instance of a schema, of a basic process or of a built-in one."""
 
     name: str
     arguments: tuple[Expression, ...] = ()
     results: tuple[str, ...] = ()
-    place: Place | None = field(default=None, compare=False, repr=False)
+    place: Place | None = None
+
+    def __eq__(self, other: object) -> bool:
+        return type(other) is Call and (self.name, self.arguments, self.results) == (
+            other.name,
+            other.arguments,
+            other.results,
+        )
+
+    def __hash__(self) -> int:
+        return hash((self.name, self.arguments, self.results))
 
 
 class Seq(msgspec.Struct, frozen=True, cache_hash=True):
@@ -210,15 +233,25 @@ class Parameter(msgspec.Struct, frozen=True):
 Head: TypeAlias = Parameter | Number | Text
 
 
-@dataclass(frozen=True, slots=True)
-class Schema:
+class Schema(msgspec.Struct, frozen=True, eq=False):
     """`name[head]<results> = body`. A constant in the head makes it a clause chosen by value (`SP[6] = …`)."""
 
     name: str
     head: tuple[Head, ...]
     results: tuple[str, ...]
     body: Process
-    place: Place | None = field(default=None, compare=False, repr=False)
+    place: Place | None = None
+
+    def __eq__(self, other: object) -> bool:
+        return type(other) is Schema and (self.name, self.head, self.results, self.body) == (
+            other.name,
+            other.head,
+            other.results,
+            other.body,
+        )
+
+    def __hash__(self) -> int:
+        return hash((self.name, self.head, self.results, self.body))
 
     @property
     def parameters(self) -> tuple[str, ...]:

@@ -15,9 +15,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextvars import ContextVar
-from dataclasses import dataclass
 from math import isinf
 from typing import Any, TypeAlias, TypeVar
+
+import msgspec
 
 from planner_reactor.errors import PlannerReactorError
 
@@ -82,8 +83,7 @@ class Symbolic:
         return _ordered(other, "<=", self)
 
 
-@dataclass(frozen=True, slots=True)
-class Unknown(Symbolic):
+class Unknown(Symbolic, msgspec.Struct, frozen=True):
     """A value that is not known. Two of the same name and serial are the same value."""
 
     name: str
@@ -93,8 +93,7 @@ class Unknown(Symbolic):
         return self.name
 
 
-@dataclass(frozen=True, slots=True)
-class Sum(Symbolic):
+class Sum(Symbolic, msgspec.Struct, frozen=True):
     """`constant + Σ factor · part`: at least one part, no factor 0, the oldest part first."""
 
     parts: tuple[tuple[Unknown | Applied, Number], ...]
@@ -111,8 +110,7 @@ class Sum(Symbolic):
         return text
 
 
-@dataclass(frozen=True, slots=True)
-class Applied(Symbolic):
+class Applied(Symbolic, msgspec.Struct, frozen=True):
     """A function of the host, a product or a quotient, of which only equal arguments are known to give the same."""
 
     function: str
@@ -128,8 +126,7 @@ class Applied(Symbolic):
 # ------------------------------------------------------------------------------------------------ constraints
 
 
-@dataclass(frozen=True, slots=True)
-class Compared:
+class Compared(msgspec.Struct, frozen=True):
     """`value relation 0`, the relation one of `<`, `<=`, `==`, `/=`; equal means within the tolerance."""
 
     value: Unknown | Sum | Applied
@@ -142,8 +139,7 @@ class Compared:
         return Compared(-self.value, "<=" if self.relation == "<" else "<")
 
 
-@dataclass(frozen=True, slots=True)
-class Alike:
+class Alike(msgspec.Struct, frozen=True):
     """Are two values the same that are not both numbers?"""
 
     left: Any
