@@ -146,7 +146,8 @@ class ActionSchema(_Placed, frozen=True):
     selected, `executability` is chained on. A schema that `senses` takes no time worth ordering;
     `otherwise` is what its abort tells. A `cleanup` may be run at any time, does nothing where its
     conditions do not hold, and serves the fail branch of a reaction. `duration` and `uses` say how long it
-    lasts and what it takes meanwhile, where the domain knows.
+    lasts and what it takes meanwhile, where the domain knows. `process` is the text of a definition in RS that stands
+    for a basic action which is no process of the host; its inputs and outputs are then ports.
     """
 
     name: str
@@ -164,6 +165,7 @@ class ActionSchema(_Placed, frozen=True):
     cleanup: bool = False
     duration: Duration | None = None
     uses: tuple[Demand, ...] = ()
+    process: str = ""
     place: Place | None = None
 
     @property
@@ -178,7 +180,7 @@ class ActionSchema(_Placed, frozen=True):
 
 class Goal(_Placed, frozen=True):
     """`forall …: antecedent => Exists …: consequent`, R (13). `lasting` atoms must hold to the end of
-    time.
+    time. A goal that is `kept` is never achieved once and for all: its consequent must hold at all times.
     """
 
     name: str
@@ -186,6 +188,7 @@ class Goal(_Placed, frozen=True):
     consequent: tuple[Atom, ...]
     lasting: tuple[bool, ...]
     size: int
+    kept: bool = False
     place: Place | None = None
 
 

@@ -52,6 +52,7 @@ from planner_reactor.logic.scope import TIME, Constraints, Scope, standing
 _Atoms: TypeAlias = Iterable[tuple[AtomNode, Atom]]
 _CONDITIONS = ("presumes", "applicability", "executability")
 _ENDS_WITH_TIME = relations(["f", "e"])
+_ALL_TIME = NAMED["encompasses"]
 
 
 def read_domain(source: str | Path, *, file: str | None = None) -> Domain:
@@ -176,8 +177,17 @@ class _Builder:
             tuple(atom for _, atom in consequent),
             lasting,
             len(scope.variables),
-            self._source.place(node.name.offset),
+            kept=self._is_kept(node, ends),
+            place=self._source.place(node.name.offset),
         )
+
+    def _is_kept(self, node: GoalNode, ends: list[int]) -> bool:
+        """Must everything that is wanted hold at all times? Not only a part of it."""
+        always = [end != 0 and end & ~_ALL_TIME == 0 for end in ends]
+        if any(always) and not all(always):
+            self._error(node.name, "unsupported-goal", f"{node.name.text} is kept in part, and achieved in part",
+                        "expected a goal of each")  # fmt: skip
+        return any(always)
 
     def _rule(self, node: RuleNode, scope: Scope) -> None:
         clauses = [node.left, node.right]

@@ -17,7 +17,7 @@ from planner_reactor.logic.domain import ActionSchema
 from planner_reactor.logic.formulas import Atom, Term, variables
 from planner_reactor.planner.because import Because
 from planner_reactor.planner.beliefs import Beliefs
-from planner_reactor.planner.plan import END, START, Link, Plan, Step
+from planner_reactor.planner.plan import START, Link, Plan, Step
 from planner_reactor.planner.problem import Problem
 from planner_reactor.planner.reactions import names_of
 from planner_reactor.planner.refinement import Refining
@@ -140,7 +140,7 @@ class _Told:
 
     def _link(self, plan: Plan, link: Link) -> str:
         atom = self.atom(plan.bindings.ground(link.atom))
-        return atom if link.consumer == END else f"{atom} of {self.action(plan, plan.step(link.consumer))}"
+        return atom if link.consumer < 0 else f"{atom} of {self.action(plan, plan.step(link.consumer))}"
 
     def assumptions(
         self, plans: list[tuple[Problem, Plan]], required: frozenset[str]

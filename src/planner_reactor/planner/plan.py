@@ -5,7 +5,8 @@ composition: a step that `meets` its effect, which must `[m o si e di fi]` its u
 `Link` records that an effect is used, so that it can be protected. Everything can be undone to a mark,
 because search backtracks.
 
-Legend: START stands for what holds when the situation is asserted, END for the moment when it succeeds.
+Legend: START stands for what holds when the situation is asserted, END for the moment when it succeeds,
+WHOLE for all the time that it lasts.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ from planner_reactor.logic.domain import ActionSchema, Effect
 from planner_reactor.logic.formulas import Atom, Bindings, Term
 from planner_reactor.logic.network import Network
 
-START, END = -1, -2
+START, END, WHOLE = -1, -2, -3
 """Where a link begins or ends when it is not a step."""
 BEFORE = relations(["b", "m"])
 NOT_LATER = relations(["b", "m", "o", "s", "si", "e", "di", "fi"])

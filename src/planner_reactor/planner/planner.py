@@ -81,7 +81,8 @@ class Planner:
         self._gate = Gate(mode=mode) if verify else None
         self._withheld: dict[int, str] = {}
         self._reducer = Reducer(Theory(domain), self.model, self._issuer, self._assuming, self._counts)
-        self._reducer.pursue(self.goal)
+        for name in dict.fromkeys((self.goal, *(g.name for g in domain.goals.values() if g.kept))):
+            self._reducer.pursue(name)
         self._foresight = Foresight(self._reducer) if foresight else None
         self._standing = Standings()
 

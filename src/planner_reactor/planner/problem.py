@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-
 import msgspec
 
 from planner_reactor.logic.formulas import Atom, Term
@@ -36,7 +35,8 @@ class Problem(msgspec.Struct, frozen=True):
     `replayed` is None if what is planned is never done again after it succeeded, else it holds the
     parameters that are then the same again. The last `kept` goals are things that held at the start and
     need only not be ended. With `enduring` the goals are those of the whole: what was achieved counts,
-    whether or not assumptions make it last.
+    whether or not assumptions make it last. With `maintained` the goals must hold for as long as the situation lasts.
+    `upheld` is what other goals keep at all times.
     """
 
     theory: Theory
@@ -50,6 +50,8 @@ class Problem(msgspec.Struct, frozen=True):
     variables: int = 0
     kept: int = 0
     enduring: bool = False
+    maintained: bool = False
+    upheld: tuple[Atom, ...] = ()
 
     def is_kept(self, goal: Goal) -> bool:
         return goal.consumer == END and goal.condition >= len(self.goals) - self.kept

@@ -15,6 +15,7 @@ import re
 from typing import Protocol
 
 from planner_reactor.logic.formulas import Numeral, Term
+from planner_reactor.planner.inlining import Inliner
 from planner_reactor.planner.plan import Parameter, Result
 from planner_reactor.planner.situations import Composition, Situation, situation_of
 from planner_reactor.planner.structure import (
@@ -22,6 +23,7 @@ from planner_reactor.planner.structure import (
     Choice,
     During,
     InOrder,
+    Meanwhile,
     Run,
     Together,
     Tree,
@@ -39,6 +41,7 @@ from planner_reactor.rs.terms import (
     Loop,
     Not,
     Number,
+    Par,
     Process,
     Seq,
     Spawn,
@@ -51,7 +54,9 @@ from planner_reactor.rs.terms import (
 REACTION = "P"
 """The schema of which every reaction is a clause `P[n] = …`."""
 INSTANCE = "k"
-_OWN = re.compile(r"k|x\d+")
+ROUND = 2
+"""Seconds after which what is kept at all times is asked for anew, so that it can be adapted meanwhile."""
+_OWN = re.compile(r"k|[xv]\d+")
 _NAME = re.compile(r"[A-Za-z_]\w*")
 
 
@@ -151,6 +156,8 @@ class _Writing:
         self._lettering = lettering
         self._fold = fold
         self._variables: dict[Term, str] = {}
+        self._ports: set[Term] = set()  # results that are handed on while the action lasts
+        self._inliner = Inliner()
         for number, argument in enumerate(situation.arguments):
             if argument is None:
                 self._variables[Parameter(number)] = f"x{len(self._variables) + 1}"
@@ -187,6 +194,8 @@ class _Writing:
                 leader = same.get(result, result)
                 name = self._variables.setdefault(leader, f"x{len(set(self._variables.values())) + 1}")
                 self._variables[result] = name
+                if action.process:
+                    self._ports.add(result)
 
     def _body(self, tree: Tree, success: Process) -> Process:
         """The composition, then `success`; from what upsets something on, a failure is cleaned up after."""
@@ -216,12 +225,25 @@ class _Writing:
                 return cond(*(self._process(part) for part in parts))
             case Together(parts):
                 return All(tuple(self._process(part) for part in parts))
+            case During(action, inner) if action.process:
+                return _until(self._process(inner), (self._call(action),))
             case During(action, inner):
                 return Disable((self._call(action), self._process(inner)))
+            case Meanwhile(actions, InOrder(())):
+                return _until(Call("Delay", (Number(ROUND),)), tuple(map(self._call, actions)))
+            case Meanwhile(actions, inner):
+                return _until(self._process(inner), tuple(map(self._call, actions)))
             case Choice(test, then, otherwise):
                 return If(self._call(test), self._process(then), self._process(otherwise))
 
-    def _call(self, action: Action) -> Call:
+    def _call(self, action: Action) -> Process:
+        if action.process:
+            ports = tuple(map(self._expression, (*action.arguments, *action.results)))
+            process = self._inliner.process(action.process, ports)
+            if action.most is None:
+                return process
+            late = Cond((Call("Delay", (Number(action.most / 1000),)), ABORT))
+            return _until(process, (late,))
         results = tuple(self._variables[result] for result in action.results)
         if not action.abstract:
             arguments = tuple(self._expression(term) for term in action.arguments)
@@ -236,7 +258,17 @@ class _Writing:
 
     def _expression(self, term: Term) -> Expression:
         name = self._variables.get(term)
+        if term in self._ports:
+            return Symbol(f"{self._lettering.situation(self._situation).name}_{name}")
         return Variable(name) if name is not None else self._lettering.constant(term)
+
+
+def _until(process: Process, others: tuple[Process, ...]) -> Process:
+    """The process beside the others, which go on side by side, until it has ended."""
+    if not others:
+        return process
+    first = process.parts if isinstance(process, Disable) else (process,)
+    return Disable((*first, others[0] if len(others) == 1 else Par(others)))
 
 
 def constant(term: Term) -> Expression:

@@ -21,7 +21,14 @@ from planner_reactor.planner.plan import END, START, Link, Parameter, Plan, Step
 from planner_reactor.planner.problem import Consulted, Problem, Truth
 from planner_reactor.planner.search import Search
 from planner_reactor.planner.situations import Child, Composition, Context, Refinement, Situation, situation_of
-from planner_reactor.planner.structure import Action, Tree, action_of, arrange, needed_before
+from planner_reactor.planner.structure import (
+    Action,
+    Tree,
+    action_of,
+    arrange,
+    as_long_as_asked,
+    needed_before,
+)
 from planner_reactor.planner.theory import Theory
 from planner_reactor.planner.thinking import Work, finish
 from planner_reactor.planner.threats import Threats
@@ -111,6 +118,8 @@ class Refining(msgspec.Struct, eq=False):
             replayed=self.context.replayed,
             variables=schema.size,
             enduring=schema.name not in self.theory.domain.schemas,
+            maintained=schema.name in self.theory.kept,
+            upheld=self.theory.upheld_beside(schema.name),
         )
         kept = [t.atom for t in problem.truths if t.atom not in goals and self._is_kept(problem, given, t)]
         return replace(problem, goals=(*goals, *kept), kept=len(kept))
@@ -147,7 +156,8 @@ class Refining(msgspec.Struct, eq=False):
         for step in plan.steps:
             yield
             self._look_after(problem, after, step)
-        return arrange(plan, otherwise)
+        tree = arrange(plan, otherwise)
+        return as_long_as_asked(tree) if problem.maintained else tree
 
     def _count(self, problem: Problem, plan: Plan) -> None:
         """Note the assumptions on which the plan rests, and those that it only brings in."""
@@ -158,7 +168,7 @@ class Refining(msgspec.Struct, eq=False):
                 lasting = self.beliefs.lasting(plan.bindings.ground(link.atom))
                 if problem.enduring and link.consumer == END:
                     continue
-                abstract = link.consumer != END and plan.step(link.consumer).schema.abstract
+                abstract = link.consumer >= 0 and plan.step(link.consumer).schema.abstract
                 if lasting.used and not self._is_fresh(plan, link, abstract=abstract):
                     (self.presumed if abstract else self.required).update(lasting.used)
 
@@ -166,7 +176,7 @@ class Refining(msgspec.Struct, eq=False):
         """Is it used as soon as it is brought about, so that it need not last?"""
         if link.maintained:
             return True
-        instant = link.consumer != END and plan.step(link.consumer).schema.senses
+        instant = link.consumer >= 0 and plan.step(link.consumer).schema.senses
         if link.throughout and not instant:
             return False
         return not any(

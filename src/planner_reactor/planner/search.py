@@ -14,7 +14,8 @@ from typing import TypeAlias
 from planner_reactor.logic.allen import NAMED
 from planner_reactor.logic.domain import ActionSchema
 from planner_reactor.logic.formulas import variables
-from planner_reactor.planner.plan import BEFORE, END, Plan, Result, Unnamed
+from planner_reactor.planner.founding import is_founded
+from planner_reactor.planner.plan import BEFORE, CONTAINS, END, WHOLE, Plan, Result, Unnamed
 from planner_reactor.planner.problem import Consulted, Goal, Problem
 from planner_reactor.planner.reach import NEVER, Reach
 from planner_reactor.planner.repetition import Part, part_of, pattern, repeat
@@ -51,11 +52,16 @@ class Search:
 
     def solve(self) -> Work[Plan | None]:
         """The plan, or None if there is none (or none was found within `NODES` choices)."""
-        goals = [Goal(atom, NAMED["equal"], END, n) for n, atom in enumerate(self.problem.goals)]
-        found = yield from self._deepen(goals)
-        found = found and self._threats.resolve()
+        found = yield from self._deepen(self._goals())
+        found = found and self._threats.resolve() and is_founded(self.plan, self.problem)
         found = found and (yield from share_out(self.problem.theory.domain, self.plan))
         return self.plan if found else None
+
+    def _goals(self) -> list[Goal]:
+        if not self.problem.maintained:
+            return [Goal(atom, NAMED["equal"], END, n) for n, atom in enumerate(self.problem.goals)]
+        self.plan.network.add(WHOLE)
+        return [Goal(atom, NAMED["encompasses"], WHOLE, n) for n, atom in enumerate(self.problem.goals)]
 
     # ------------------------------------------------------------------------------- control of the search
 
@@ -183,8 +189,9 @@ class Search:
                 if _is_nameless(argument):
                     return False
                 if isinstance(argument, Result) and argument.step >= plan.first:
+                    order = CONTAINS if plan.step(argument.step).schema.process else BEFORE  # a port, or what is returned
                     known = plan.network.relation(argument.step, step.number)
-                    if known & ~BEFORE and not plan.order(argument.step, step.number, BEFORE):
+                    if known & ~order and not plan.order(argument.step, step.number, order):
                         return False
         return True
 

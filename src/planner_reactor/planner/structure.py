@@ -12,6 +12,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import TypeAlias
 
 import msgspec
+from msgspec.structs import replace
 
 from planner_reactor.logic.allen import inverse
 from planner_reactor.logic.domain import ActionSchema
@@ -25,16 +26,21 @@ MOST_CUT = 8
 
 
 class Action(msgspec.Struct, frozen=True):
-    """A step of a finished plan: `arguments` are constants, `results` what it returns."""
+    """A step of a finished plan: `arguments` are constants, `results` what it returns.
+
+    With a `process` it is that definition in RS (`inlining`); `most`: milliseconds after which it has failed.
+    """
 
     name: str
     abstract: bool
     arguments: tuple[Term, ...] = ()
     results: tuple[Result, ...] = ()
+    process: str = ""
+    most: float | None = None
 
     def renamed(self, constants: Mapping[Term, Term]) -> Action:
         """The same action on other constants."""
-        return Action(self.name, self.abstract, tuple(constants.get(a, a) for a in self.arguments), self.results)
+        return replace(self, arguments=tuple(constants.get(a, a) for a in self.arguments))
 
 
 class Run(msgspec.Struct, frozen=True):
@@ -60,6 +66,13 @@ class During(msgspec.Struct, frozen=True):
     inner: Tree
 
 
+class Meanwhile(msgspec.Struct, frozen=True):
+    """The actions go on side by side until the rest is done; without a rest, for as long as it is asked for."""
+
+    actions: tuple[Action, ...]
+    inner: Tree
+
+
 class Choice(msgspec.Struct, frozen=True):
     """If the test stops, `then`, else `otherwise`."""
 
@@ -68,7 +81,7 @@ class Choice(msgspec.Struct, frozen=True):
     otherwise: Tree
 
 
-Tree: TypeAlias = Run | InOrder | Together | During | Choice
+Tree: TypeAlias = Run | InOrder | Together | During | Meanwhile | Choice
 NOTHING = InOrder(())
 
 
@@ -81,7 +94,9 @@ def action_of(plan: Plan, number: int) -> Action:
     """A step of a finished plan as an action."""
     step = plan.step(number)
     results = tuple(Result(number, n) for n in range(len(step.schema.outputs)))
-    return Action(step.schema.name, step.schema.abstract, plan.arguments(step), results)
+    schema = step.schema
+    most = schema.duration.most if schema.process and schema.duration else None
+    return Action(schema.name, schema.abstract, plan.arguments(step), results, schema.process, most)
 
 
 def actions_of(tree: Tree) -> Iterator[Action]:
@@ -95,6 +110,9 @@ def actions_of(tree: Tree) -> Iterator[Action]:
                 waiting.extend(reversed(parts))
             case During(action, inner):
                 yield action
+                waiting.append(inner)
+            case Meanwhile(actions, inner):
+                yield from actions
                 waiting.append(inner)
             case Choice(test, then, otherwise):
                 yield test
@@ -112,8 +130,15 @@ def renamed(tree: Tree, constants: Mapping[Term, Term]) -> Tree:
             return Together(tuple(renamed(part, constants) for part in parts))
         case During(action, inner):
             return During(action.renamed(constants), renamed(inner, constants))
+        case Meanwhile(actions, inner):
+            return Meanwhile(tuple(a.renamed(constants) for a in actions), renamed(inner, constants))
         case Choice(test, then, otherwise):
             return Choice(test.renamed(constants), renamed(then, constants), renamed(otherwise, constants))
+
+
+def as_long_as_asked(tree: Tree) -> Tree:
+    """Actions of which none ends by itself, as what is done for as long as somebody wants it."""
+    return Meanwhile(tuple(actions_of(tree)), NOTHING)
 
 
 def first_action(tree: Tree) -> Action | None:
@@ -188,6 +213,10 @@ class _Order:
     def _before(self, number: int, numbers: Sequence[int]) -> list[int]:
         return [n for n in numbers if self._needed[n] >> number & 1]
 
+    def _lasts_as_long(self, one: int, other: int) -> bool:
+        """Must each last through the other, or are they the same?"""
+        return one == other or bool(self._inside[one] >> other & 1 and self._inside[other] >> one & 1)
+
     # ------------------------------------------------------------------------------- series and parallel
 
     def _blocks(self, numbers: Sequence[int]) -> list[_Block]:
@@ -198,14 +227,16 @@ class _Order:
             inner |= self._inside[n]
         blocks = []
         for n in numbers:
-            if not inner >> n & 1:
-                inside = [m for m in numbers if self._inside[n] >> m & 1] if self._inside[n] else []
+            beside = [m for m in numbers if self._lasts_as_long(n, m)] if inner >> n & 1 else [n]
+            outside = sum(1 << m for m in numbers if self._inside[m] >> n & 1)
+            if beside[0] == n and outside & ~_bits(beside) == 0:
+                inside = [m for m in numbers if self._inside[n] >> m & 1 and m not in beside]
                 tree: Tree = Run(self._steps[n])
-                if inside:
-                    tree = During(self._steps[n], self._composed(self._blocks(inside)))
-                members = _bits([n, *inside])
+                if inside or len(beside) > 1:
+                    tree = _meanwhile([self._steps[m] for m in beside], self._composed(self._blocks(inside)))
+                members = _bits([*beside, *inside])
                 after = 0
-                for m in (n, *inside):
+                for m in (*beside, *inside):
                     after |= self.after[m] & present & ~members
                 blocks.append(_Block(tree, members, after))
         return blocks
@@ -250,7 +281,7 @@ class _Order:
                 return sum(map(self.span, parts))
             case Together(parts):
                 return max(map(self.span, parts))
-            case During(_, inner):
+            case During(_, inner) | Meanwhile(_, inner):
                 return self.span(inner)
             case Choice(test, then, otherwise):
                 return self._lasts.get(test, UNKNOWN) + max(self.span(then), self.span(otherwise))
@@ -277,6 +308,19 @@ def _cuts(blocks: list[_Block], whole: int) -> Iterator[int]:
         yield before | block.members
         yield whole & ~block.after
         yield whole & ~block.after & ~block.members
+
+
+def _meanwhile(actions: list[Action], inner: Tree) -> Tree:
+    """The actions go on while the rest is done, side by side with those that the rest already goes on beside."""
+    match inner:
+        case During(action, rest):
+            return Meanwhile((*actions, action), rest)
+        case Meanwhile(others, rest):
+            return Meanwhile((*actions, *others), rest)
+        case _ if len(actions) == 1:
+            return During(actions[0], inner)
+        case _:
+            return Meanwhile(tuple(sorted(actions, key=lambda action: not action.results)), inner)
 
 
 class _Block(msgspec.Struct, frozen=True):

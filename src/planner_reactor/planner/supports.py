@@ -61,6 +61,12 @@ class Supports(msgspec.Struct, eq=False):
         for told, holds in sorted(self.problem.beliefs.told, key=str):
             if holds and told.predicate == atom.predicate:
                 yield partial(self._by_fact, goal, told)
+        for kept in self.problem.upheld:
+            if kept.predicate == atom.predicate:
+                yield partial(self._by_upheld, goal, kept)
+
+    def _by_upheld(self, goal: Goal, kept: Atom) -> list[Goal] | None:
+        return [] if self.plan.bindings.unify(goal.atom.arguments, kept.arguments) else None
 
     def _by_fact(self, goal: Goal, fact: Atom) -> list[Goal] | None:
         lasting = self.problem.beliefs.lasting(fact)

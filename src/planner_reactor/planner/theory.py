@@ -26,6 +26,11 @@ class Kind(msgspec.Struct, frozen=True):
     number: int
 
 
+def is_ground(atom: Atom) -> bool:
+    """Does it speak of constants only?"""
+    return not list(variables((atom,)))
+
+
 class Theory:
     """The static side of one domain."""
 
@@ -34,6 +39,8 @@ class Theory:
         self.effects = {s.name: frozenset(e.atom.predicate for e in s.effects) for s in domain.schemas.values()}
         self.needs = {s.name: frozenset(c.atom.predicate for c in s.executability) for s in domain.schemas.values()}
         self.ends = {s.name: self._ended_by(s) for s in domain.schemas.values()}
+        self.kept = frozenset(goal.name for goal in domain.goals.values() if goal.kept)
+        """The goals that are never achieved once and for all."""
         self.achievable = frozenset().union(*self.effects.values())
         self.changing = frozenset().union(*self.ends.values())
         self.lasting_facts = frozenset(domain.facts) - self.changing
@@ -51,6 +58,11 @@ class Theory:
             s.name: tuple(a for a in s.applicability if a.predicate in domain.assumptions)
             for s in domain.schemas.values()
         }
+
+    def upheld_beside(self, goal: str) -> tuple[Atom, ...]:
+        """What the goals that are kept hold at all times, for every other goal."""
+        goals = self.domain.goals.values() if goal in self.domain.goals else ()
+        return tuple(atom for g in goals if g.kept and g.name != goal for atom in g.consequent if is_ground(atom))
 
     def _alternatives(self, schema: ActionSchema) -> frozenset[str]:
         own = self.effects[schema.name]
