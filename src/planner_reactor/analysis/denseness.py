@@ -64,8 +64,8 @@ class Denseness(msgspec.Struct, frozen=True):
     """The port is (delay, resolution)-dense, γ and τ in seconds, while `given` holds.
 
     `inputs` are the ports that its writer takes values from, `stages` every component on the way, sources first.
-    `value` is what is offered, `change` δ of Definition 4 and `trend` its sign. `cut_by`: a value at one of these ports begins
-    the writer anew, which then needs `restart` seconds.
+    `value` is what is offered, `change` δ of Definition 4 and `trend` its sign. `cut_by`: a value at one of these ports
+    begins the writer anew, which then needs `restart` seconds.
     """
 
     port: Value

@@ -124,10 +124,18 @@ def rounds_of(process: Process, world: World) -> tuple[Rounds, ...]:
     return _Reader(world).process(process, {}, (), ())
 
 
+def ways_through(process: Process, world: World, scope: Scope) -> list[Path]:
+    """Every way through a process that goes round nowhere, such as a test."""
+    return _Reader(world).ways(process, scope)
+
+
 class _Reader:
     def __init__(self, world: World) -> None:
         self._world = world
         self._serials = count(1)
+
+    def ways(self, process: Process, scope: Scope) -> list[Path]:
+        return self._paths(process, scope, ())
 
     # --------------------------------------------------------------------------------------------- what goes round
 
