@@ -28,8 +28,9 @@ from planner_reactor.analysis.interface import Connector, carried, interface, se
 from planner_reactor.analysis.limits import Limit, limit_set
 from planner_reactor.analysis.subnets import traffic
 from planner_reactor.errors import InputError, nearest
-from planner_reactor.planner.exploiting import Model, Use, of_drift, of_motor, of_sensor
+from planner_reactor.planner.exploiting import of_drift, of_motor, of_sensor
 from planner_reactor.planner.exploiting_text import DerivedAction, written
+from planner_reactor.planner.uses import Model, Use
 from planner_reactor.rs.configurations import World
 from planner_reactor.rs.facts import names
 from planner_reactor.rs.given import constant, process_with_values
