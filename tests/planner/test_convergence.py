@@ -10,7 +10,7 @@ import pytest
 
 from planner_reactor.planner import Planner
 from planner_reactor.planner.convergence import Convergence
-from tests.planner.driving import GREENHOUSE, KITTING, PAPERS, TRIED, applied, kitting, perception, settle
+from tests.planner.driving import GREENHOUSE, KITTING, PAPERS, TRIED, applied, kitting, perception, reinstatable, settle
 
 DOMAINS = (KITTING, TRIED, PAPERS, GREENHOUSE)
 
@@ -58,6 +58,25 @@ def test_no_failures_in_any_order_lead_it_astray(seed: int) -> None:
             planner.perceive(perception("assumption_failure", rng.choice(list(domain.assumptions))))
         if step is None:
             break
+    assert planner.breaches == ()
+
+
+@pytest.mark.parametrize("path", [KITTING, GREENHOUSE], ids=lambda path: path.stem)
+def test_nor_do_assumptions_that_return(path: Path) -> None:
+    """What has lost a caller is planned again: without ACT, FinishTray asserts FillTray, and with it no more."""
+    domain = reinstatable(path)
+    planner = Planner(domain, relax=(), verify=False)
+    settle(planner)
+    for name in domain.assumptions:
+        for kind in ("assumption_failure", "assumption_holds"):
+            planner.perceive(perception(kind, name))  # type: ignore[arg-type]
+            before = planner.lacking
+            while (step := planner.step()) is not None:
+                for adaptation in step.adaptations:
+                    planner.perceive(applied(adaptation))
+                    assert step.kind != "refine" or planner.lacking < before
+                before = planner.lacking
+    assert len(planner.relaxations) == 2 * len(domain.assumptions)
     assert planner.breaches == ()
 
 

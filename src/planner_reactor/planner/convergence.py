@@ -3,7 +3,8 @@
 (11) What is lacking shrinks to nothing. A reduction closes one situation and may open others, so their number
 says nothing; but what it opens lies strictly below what it closes: fewer abstract actions are left that could
 stand under it, and there are finitely many. So the counts of open situations by that number, the greatest number
-first, go down in the order of a dictionary, which cannot be done for ever.
+first, go down in the order of a dictionary, which cannot be done for ever. What has lost a caller may get another
+reaction, too; it counts as below all that stood above it since assumptions changed (docs/regimes.md).
 
 (9) Every relaxation leaves less that is unlikely: l(ω) is the sum of -log of the likelihoods of what is held.
 """
@@ -28,7 +29,7 @@ def lacking(domain: Domain, segments: Iterable[Segment]) -> tuple[int, ...]:
     counts = [0] * (len(abstract) + 1)
     for segment in segments:
         if segment.is_open:
-            counts[len(abstract) - sum(name not in segment.context.forbidden for name in abstract)] += 1
+            counts[len(abstract) - sum(name not in segment.above for name in abstract)] += 1
     return tuple(counts)
 
 
@@ -51,7 +52,8 @@ class Convergence(msgspec.Struct, eq=False):
     def reduced(self, closed: Segment, opened: Iterable[Segment]) -> None:
         """A situation was closed, others were opened: they must lie below it (11)."""
         for segment in opened:
-            if not closed.context.forbidden < segment.context.forbidden:
+            segment.stood_below |= closed.stood_below
+            if not closed.above < segment.above:
                 self.breaches.append(f"(11): {closed.name} was closed, and {segment.name}, not below it, was opened")
 
     def relaxed(self, name: str, before: float, after: float) -> None:

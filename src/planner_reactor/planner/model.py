@@ -44,6 +44,12 @@ class Segment(msgspec.Struct):
     settled: bool = False
     asked: tuple[Atom, ...] = ()
     because: tuple[Because, ...] = ()  # why it is open
+    stood_below: frozenset[str] = frozenset()  # what stood above it since assumptions changed, and does not any more
+
+    @property
+    def above(self) -> frozenset[str]:
+        """The abstract actions that stand above it, or did since assumptions changed."""
+        return self.context.forbidden | self.stood_below
 
     @property
     def is_stub(self) -> bool:
@@ -173,9 +179,16 @@ class Model(msgspec.Struct, eq=False):
                 continue
             if _matters(segment, context):
                 changed.append(segment)
+            segment.stood_below = segment.above
             segment.context = context
             waiting.extend(child.situation for child in segment.children)
         return changed
+
+    def begin_anew(self) -> Iterator[Segment]:
+        """All segments: assumptions change, and what stood above them before counts no more."""
+        for segment in self:
+            segment.stood_below = frozenset()
+            yield segment
 
     def why(self, situation: Situation, drafted: Drafted) -> tuple[Because, ...]:
         """Why a situation is new: a draft has a situation assert it."""

@@ -334,7 +334,7 @@ class Reducer:
     def mark_outdated(self, urgency: int, because: Because, *, given_up: bool = True) -> None:
         """Plan again what rests on what is relaxed now, or missed what is not; also what was `given_up`."""
         relaxed = self.assuming.beliefs.relaxed
-        outdated = [s for s in self.model if s.refinement and not s.refinement.serves(relaxed)]
+        outdated = [s for s in self.model.begin_anew() if s.refinement and not s.refinement.serves(relaxed)]
         self.mark([s for s in outdated if given_up or s.refusals < MOST_REFUSALS], urgency, because)
 
     def raise_urgency(self, name: str, urgency: int, because: Because) -> Segment | None:

@@ -1,0 +1,1 @@
+"""Random schedules of failures, returns, other perceptions and answers, on the real planner (docs/regimes.md)."""
