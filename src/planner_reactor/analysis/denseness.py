@@ -58,14 +58,15 @@ class Stage(msgspec.Struct, frozen=True):
     delay: Any
     resolution: Any
     form: str
+    once: bool = False
 
 
 class Denseness(msgspec.Struct, frozen=True):
     """The port is (delay, resolution)-dense, γ and τ in seconds, while `given` holds.
 
     `inputs` are the ports that its writer takes values from, `stages` every component on the way, sources first.
-    `value` is what is offered, `change` δ of Definition 4 and `trend` its sign. `cut_by`: a value at one of these ports
-    begins the writer anew, which then needs `restart` seconds.
+    `value` is what is offered, `change` δ of Definition 4, `most` a bound of |δ|, `trend` its sign. `cut_by`: a value
+    at one of these ports begins the writer anew, which then needs `restart` seconds.
     """
 
     port: Value
@@ -82,6 +83,7 @@ class Denseness(msgspec.Struct, frozen=True):
     cut_by: tuple[Value, ...] = ()
     restart: Any = 0
     overlap: Any = 0
+    most: Any = None
 
     @property
     def period(self) -> Any:
@@ -141,6 +143,7 @@ class Netlist:
         self.components: tuple[Process, ...] = (*network(process, world).components, *more)
         self._rounds: dict[int, tuple[Rounds, ...] | Irreducible] = {}
         self._traffic = [traffic(c, world) for c in self.components]
+        self._locals: dict[Value, Local | Failure] = {}
 
     @property
     def ports(self) -> tuple[str, ...]:
@@ -170,6 +173,11 @@ class Netlist:
 
     def local(self, port: Value) -> Local | Failure:
         """What the writer of a port does by itself: Definitions 1 and 2, Lemma 5, Theorem 6."""
+        if port not in self._locals:
+            self._locals[port] = self._local(port)
+        return self._locals[port]
+
+    def _local(self, port: Value) -> Local | Failure:
         writers = self.writers(port)
         if len(writers) != 1:
             names = ", ".join(map(self.name, writers))
@@ -217,12 +225,12 @@ class Netlist:
         for asked in own.gives:
             delay = delay + self.busy(asked, supplied)
         resolution = own.resolution if own.resolution is not None else self.busy(port, supplied)
-        stages[Stage(process, port, own.delay, resolution, own.form)] = None
+        stages[Stage(process, port, own.delay, resolution, own.form, own.once)] = None
         return Denseness(
             port, process, own.form, delay, greatest(resolution, least(*held)) if held else resolution,
             tuple(stages), tuple(p for takes in own.takes for p, _ in takes), own.value, own.change,
             _transferred(own, trends), tuple(dict.fromkeys(given)), own.cut_by, own.restart + (delay - own.delay),
-            own.overlap,
+            own.overlap, own.most,
         )  # fmt: skip
 
     def busy(self, port: Value, supplied: Supplied) -> Any:

@@ -16,7 +16,7 @@ from planner_reactor.analysis.durations import greatest
 from planner_reactor.analysis.rounds import Path, Phase, Rounds
 from planner_reactor.rs.constraints import implies, instance
 from planner_reactor.rs.terms import Spawn, Value
-from planner_reactor.rs.unknowns import Applied, Compared, Constraint, Sum, Symbolic, Unknown, unknowns
+from planner_reactor.rs.unknowns import Applied, Compared, Constraint, Sum, Symbolic, Unknown, split, unknowns
 
 Trend: TypeAlias = Literal["increasing", "decreasing", "constant", "either", "open"]
 Takes: TypeAlias = tuple[tuple[Value, Any], ...]
@@ -28,7 +28,7 @@ class Local(msgspec.Struct, frozen=True):
 
     `takes` are those between two offers, one after the other; `gives` the ports at which it waits for a reader.
     `resolution` is None if it offers a value until somebody takes it. `restart` is the time to the first offer after it
-    was begun anew.
+    was begun anew, `most` a bound of |change|. It hands a value over at most `once`, or again and again (a STREAM).
     """
 
     form: str
@@ -43,6 +43,8 @@ class Local(msgspec.Struct, frozen=True):
     cut_by: tuple[Value, ...] = ()
     restart: Any = 0
     overlap: Any = 0
+    most: Any = None
+    once: bool = False
 
 
 class Refusal(msgspec.Struct, frozen=True):
@@ -107,7 +109,7 @@ def _sequential(port: Value, rounds: Rounds, way: Path) -> Local:
     return Local(
         form, delay, resolution, takes, tuple(p for phase in gap if phase.waits for p, _ in phase.gives), value,
         change, _trend(change, way.given, rounds) if not takes else "open", _given(rounds, way, (way,)),
-        rounds.cut_by, _time(before),
+        rounds.cut_by, _time(before), 0, _most(change, way.given), until_taken,
     )  # fmt: skip
 
 
@@ -146,7 +148,7 @@ def _spawned(port: Value, rounds: Rounds, way: Path, body: Path) -> Local:
         "Theorem 6", delay, None if offer.high == inf and offer.gives else offer.high,
         tuple(phase.takes for phase in way.phases if phase.takes), (), value, None, "open",
         _given(rounds, body, (way, body)), rounds.cut_by, period + _time(before),
-        greatest(0, offer.high + apart - shortest) if offer.high != inf else 0,
+        greatest(0, offer.high + apart - shortest) if offer.high != inf else 0, None, bool(offer.gives),
     )  # fmt: skip
 
 
@@ -171,6 +173,23 @@ def _trend(change: Any, given: Condition, rounds: Rounds) -> Trend:
     known = [*constraints_of(given), *_positive(change, rounds)]
     rising, falling = (Compared(sign * change, "<") for sign in (-1, 1))
     return "increasing" if implies(known, rising) else "decreasing" if implies(known, falling) else "either"
+
+
+def _most(change: Any, given: Condition) -> Any:
+    """A bound of |δ|: of a value that is drawn, the greater end of its range; None if there is none."""
+    if not isinstance(change, Unknown | Sum | Applied):
+        return None if change is None else abs(change)
+    drawn = [u for u in unknowns(change) if u.serial > 0]
+    if not drawn:
+        return change
+    if not (isinstance(change, Unknown) and len(drawn) == 1):
+        return None
+    ends: list[Any] = []
+    for c in constraints_of(given):
+        factors, _ = split(c.value) if isinstance(c, Compared) else ({}, 0)
+        if isinstance(c, Compared) and abs(factors.get(change, 0)) == 1 and c.relation in ("<", "<="):
+            ends.append(change * factors[change] - c.value)
+    return greatest(*ends) if len(ends) == 2 else None
 
 
 def _positive(change: Value, rounds: Rounds) -> list[Constraint]:
