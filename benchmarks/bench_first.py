@@ -6,11 +6,10 @@
 from __future__ import annotations
 
 import sys
-from pathlib import Path
 
 from planner_reactor.logic.reader import read_domain
 from planner_reactor.planner import Planner
 
-planner = Planner(read_domain(Path(sys.argv[1]).read_text(encoding="utf-8")), relax=())
+planner = Planner(read_domain(sys.argv[1]), relax=())
 while (step := planner.step()) is not None and not step.adaptations:
     pass

@@ -15,7 +15,6 @@ A process that *aborts* is an outcome of the language, never one of these.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from difflib import get_close_matches
 
 import msgspec
 
@@ -111,6 +110,8 @@ def nearest(name: str, candidates: Iterable[str]) -> str:
 
     The first letter is seldom mistaken: where it differs, all else has to be closer (`Try` does not mean `GTR`).
     """
+    from difflib import get_close_matches  # only mistakes need it
+
     by_folded = {c.lower(): c for c in candidates}
     folded = name.lower()
     alike = [c for c in by_folded if c[:1] == folded[:1]]

@@ -9,16 +9,15 @@ looked at once; what adds to nothing needs no look at all.
 from __future__ import annotations
 
 import re
-from collections.abc import Hashable, Iterable, Mapping, Sequence
+from collections.abc import Hashable, Iterable, Sequence
 from math import inf, isinf
-
-import msgspec
 
 from planner_reactor.analysis.forms import Known
 from planner_reactor.analysis.looking import Looking, finish
 from planner_reactor.analysis.protocols import LIMIT, Checked, Counterexample, Protocol, checking
 from planner_reactor.analysis.slicing import Slice, Sliced, apart, sliced, unknown_names
 from planner_reactor.analysis.standing import Standing, shape
+from planner_reactor.analysis.verdicts import Environment, Verdict
 from planner_reactor.errors import BudgetError, InputError
 from planner_reactor.rs.bounds import Bounds
 from planner_reactor.rs.configurations import Ending, Label, World
@@ -48,37 +47,6 @@ RIGHT = Checked({}, 0)
 """What is known of a shape that is right."""
 
 OPEN = {name: Signature(name, window=(0.0, inf)) for name in ("Works", "Asks")}
-
-
-class Environment(msgspec.Struct, frozen=True):
-    """What is known of the basic processes: signatures with their age windows, and limits beyond those (seconds)."""
-
-    signatures: Mapping[str, Signature] = msgspec.field(default_factory=dict)
-    limits: Mapping[str, float] = msgspec.field(default_factory=dict)
-
-
-class Verdict(msgspec.Struct, frozen=True, kw_only=True):
-    """What holds of an adaptation. `bound_s` is None where nothing is known of the basic processes.
-
-    `counterexample` holds the labels of a shortest path to what is broken first (`why`), the last `cycle` of them going
-    round for ever; `states` were looked at for it, 0 if it was known already.
-    """
-
-    consistent: bool = True
-    safe: bool = True
-    atomic: bool = True
-    local: bool = True
-    bounded: bool = True
-    bound_s: float | None = None
-    why: str = ""
-    counterexample: tuple[Label, ...] = ()
-    cycle: int = 0
-    states: int = 0
-
-    @property
-    def holds(self) -> bool:
-        """May the adaptation be issued?"""
-        return self.consistent and self.safe and self.atomic and self.local and self.bounded
 
 
 class Verifier:

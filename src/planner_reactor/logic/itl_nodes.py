@@ -7,7 +7,7 @@ from typing import TypeAlias
 import msgspec
 
 
-class Name(msgspec.Struct, frozen=True):
+class Name(msgspec.Struct, frozen=True, gc=False):
     """An identifier or a number, and where it stands."""
 
     text: str

@@ -351,12 +351,13 @@ class _Parser:
         return tuple(found)
 
     def _arguments(self, brackets: str) -> tuple[Name, ...]:
+        closing = brackets[1]
         self._need(brackets[0])
         found: list[Name] = []
-        while not self._taken(brackets[1]):
+        while not self._taken(closing):
             if found:
-                self._need(",", f", or {brackets[1]}")
-            found.append(self._name(f"a name or {brackets[1]}", numbers=True))
+                self._need(",", ", or " + closing)
+            found.append(self._name("a name or " + closing, numbers=True))
         return tuple(found)
 
     def _name(self, expected: str, *, numbers: bool = False) -> Name:
@@ -382,8 +383,9 @@ class _Parser:
         self._need(":")
 
     def _need(self, text: str, expected: str = "") -> None:
-        if not self._taken(text):
+        if self.token.text != text:
             raise self._wrong(expected or text)
+        self._advance()
 
     def _advance(self) -> None:
         if self.token.kind != "end":

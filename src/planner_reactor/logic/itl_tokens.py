@@ -7,7 +7,8 @@ a hostile text from costing more than milliseconds.
 from __future__ import annotations
 
 import re
-from typing import NamedTuple
+
+import msgspec
 
 from planner_reactor.errors import Diagnostic, DomainError, Place
 
@@ -27,7 +28,7 @@ _TOKEN = re.compile(
 )
 
 
-class Token(NamedTuple):
+class Token(msgspec.Struct, frozen=True, gc=False):
     """`kind` is `name`, `number`, `sign` or `end`; `offset` counts characters from 0."""
 
     kind: str

@@ -9,8 +9,8 @@ single sentences are found here, those between sentences in `checks`.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from pathlib import Path
-from typing import TypeAlias
+from os import PathLike
+from typing import TYPE_CHECKING, TypeAlias
 
 from planner_reactor.errors import Diagnostic, DomainError
 from planner_reactor.logic.allen import NAMED, inverse, relations
@@ -49,6 +49,9 @@ from planner_reactor.logic.itl_syntax import LABELS, parse
 from planner_reactor.logic.itl_tokens import Source
 from planner_reactor.logic.scope import TIME, Constraints, Scope, standing
 
+if TYPE_CHECKING:
+    from pathlib import Path
+
 _Atoms: TypeAlias = Iterable[tuple[AtomNode, Atom]]
 _CONDITIONS = ("presumes", "applicability", "executability")
 _ENDS_WITH_TIME = relations(["f", "e"])
@@ -76,8 +79,9 @@ def check_domain(text: str, *, file: str = "<text>") -> tuple[Diagnostic, ...]:
 
 
 def _text_of(source: str | Path, file: str | None) -> tuple[str, str]:
-    if isinstance(source, Path) or (source.endswith(".itl") and "\n" not in source):
-        return Path(source).read_text(encoding="utf-8"), file or str(source)
+    if isinstance(source, PathLike) or (source.endswith(".itl") and "\n" not in source):
+        with open(source, encoding="utf-8") as text:
+            return text.read(), file or str(source)
     return source, file or "<text>"
 
 

@@ -9,8 +9,9 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator
-from dataclasses import dataclass, field
 from math import inf
+
+import msgspec
 
 from planner_reactor.errors import InputError, nearest
 from planner_reactor.logic.domain import ActionSchema, Domain, Duration
@@ -23,15 +24,14 @@ UNKNOWN = Duration(0.0, inf)
 NO_TIME = Duration(0.0, 0.0)
 
 
-@dataclass(slots=True)
-class Forecast:
+class Forecast(msgspec.Struct, eq=False):
     """Of the reactor in `model`. `fold`: are constants part of a situation's name?"""
 
     domain: Domain
     model: Model
     fold: bool
-    _lasts: dict[Situation, Duration] = field(default_factory=dict)
-    _takes: dict[Situation, Counter[Atom]] = field(default_factory=dict)
+    _lasts: dict[Situation, Duration] = msgspec.field(default_factory=dict)
+    _takes: dict[Situation, Counter[Atom]] = msgspec.field(default_factory=dict)
 
     def of(self, name: str) -> Duration:
         """How long the situation of this name lasts (milliseconds); InputError if there is none."""

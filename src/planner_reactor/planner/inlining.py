@@ -13,7 +13,6 @@ from functools import lru_cache
 from msgspec.structs import replace
 
 from planner_reactor.errors import InputError
-from planner_reactor.rs.parser import parse_program
 from planner_reactor.rs.terms import (
     Apply,
     Call,
@@ -58,6 +57,8 @@ class Inliner:
 @lru_cache(256)
 def definition(text: str) -> Schema:
     """The one definition in a text, which must not call itself; InputError if it is not like that."""
+    from planner_reactor.rs.parser import parse_program  # most domains have no such actions
+
     schemas = parse_program(text, file="<action>").schemas
     if len(schemas) != 1 or any(call.name == schemas[0].name for call in calls(schemas[0].body)):
         raise InputError(f"an action is written as one definition that does not call itself, not as {text.strip()}")

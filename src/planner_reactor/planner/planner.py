@@ -17,7 +17,7 @@ from collections.abc import Mapping
 
 from msgspec.structs import replace
 
-from planner_reactor.analysis.adaptations import Environment
+from planner_reactor.analysis.verdicts import Environment
 from planner_reactor.errors import InputError, nearest
 from planner_reactor.link.messages import Mode, Perception, Standing
 from planner_reactor.logic.diagnosis import Diagnosis
@@ -213,6 +213,8 @@ class Planner:
 
         None if there is nothing to do until something is perceived.
         """
+        if self._gate is not None:
+            self._gate.prepare()
         held = self._gate.held if self._gate is not None else None
         if self._standing.busy:
             return self._standing.step({adaptation.id for adaptation in held.adaptations} if held else ())

@@ -51,11 +51,8 @@ class Reducer:
         counts: Counter[str],
         convergence: Convergence | None = None,
     ) -> None:
-        self.theory = theory
-        self.model = model
-        self.issuer = issuer
-        self.assuming = assuming
-        self.counts = counts
+        self.theory, self.model, self.issuer = theory, model, issuer
+        self.assuming, self.counts = assuming, counts
         self.convergence = convergence or Convergence()
         self.records: dict[int, Record] = {}  # of the last adaptations, to be explained
         self.memory = Memory(theory)

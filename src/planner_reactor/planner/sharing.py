@@ -13,7 +13,6 @@ run, and between situations the host serves one after the other.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
 from itertools import islice, permutations
 
 import msgspec
@@ -124,18 +123,15 @@ class Sharing:
             yield from islice(permutations(sorted(self.needs, key=lambda n: (-self.tail[n], n))), TRIES)
 
 
-@dataclass(slots=True)
 class _Scheduling:
     """One schedule. On each track of a resource: until when it is taken, and by whom last."""
 
-    sharing: Sharing
-    wishes: tuple[int, ...]
-    tracks: dict[Atom, list[tuple[float, int]]] = field(init=False)
-    ends: dict[int, float] = field(default_factory=dict)
-    turns: list[Turn] = field(default_factory=list)
-
-    def __post_init__(self) -> None:
-        self.tracks = {resource: [(0.0, -1)] * amount for resource, amount in self.sharing.capacity.items()}
+    def __init__(self, sharing: Sharing, wishes: tuple[int, ...]) -> None:
+        self.sharing = sharing
+        self.wishes = wishes
+        self.tracks = {resource: [(0.0, -1)] * amount for resource, amount in sharing.capacity.items()}
+        self.ends: dict[int, float] = {}
+        self.turns: list[Turn] = []
 
     def run(self) -> Work[Schedule | None]:
         """Each step as soon as it can be; None if it cannot be in the order wished."""

@@ -10,24 +10,35 @@ at once; another is looked at a few states at a time, and held meanwhile.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TypeAlias
+from functools import cached_property
+from importlib import import_module
+from typing import TYPE_CHECKING, TypeAlias
 
 from msgspec.structs import replace
 
-from planner_reactor.analysis.adaptations import Environment, Verdict, Verifier
-from planner_reactor.analysis.forms import Forms, Known
-from planner_reactor.analysis.labels import show_label
 from planner_reactor.analysis.looking import Looking, finish
-from planner_reactor.analysis.standing import Standing
+from planner_reactor.analysis.verdicts import Environment, Verdict
 from planner_reactor.errors import RSError
 from planner_reactor.link.messages import Adaptation, Perception
 from planner_reactor.link.surgeries import surgery
 from planner_reactor.planner.steps import Step
 from planner_reactor.planner.thinking import advance
 
+if TYPE_CHECKING:  # loaded when they are needed: not for the first adaptation
+    from planner_reactor.analysis.adaptations import Verifier
+    from planner_reactor.analysis.forms import Forms, Known
+    from planner_reactor.analysis.standing import Standing
+
 NOTHING_WAS = Verdict(bound_s=0.0)
 """Of what adds to nothing: nobody can be in its way, and it waits for nobody."""
 
+
+PARTS = tuple(
+    f"planner_reactor.{name}"
+    for name in ("rs.states", "rs.vocabulary", "rs.configurations", "rs.leaves", "rs.arguments", "rs.parser",
+                 "analysis.forms", "analysis.explore", "analysis.protocols", "analysis.adaptations")
+)  # fmt: skip
+"""What looking needs, in the order in which it is loaded: a millisecond or two each."""
 
 STATES = 4
 """So many states are looked at in one step of the planner: about two milliseconds."""
@@ -39,19 +50,45 @@ class Gate:
     """Verifies the adaptations of one planner, in the order in which they are issued."""
 
     def __init__(self, environment: Environment | None = None, *, mode: str = "drain") -> None:
-        self.verifier = Verifier(environment, mode=mode)
+        self._environment = environment
+        self._mode = mode
+        self._parts = iter(PARTS)
         self._patient = mode == "wait"  # what may never be granted is given up at its deadline, and says so
         self.withheld: dict[int, Verdict] = {}  # what was not sent, by the adaptation's id
         self._known: set[str] = set()  # situations that an adaptation has named
         self._unread: list[Adaptation] = []
-        self._forms = Forms()
-        self._standing = Standing()
         self._under_way: dict[int, tuple[Adaptation, tuple[Known, ...]]] = {}  # with what it removes
         self._held: tuple[Step, Looking[Verdicts]] | None = None
 
     def meet(self, environment: Environment) -> None:
         """What is known of the basic processes from now on: bounds are numbers, and what has none is withheld."""
-        self.verifier.environment = environment
+        self._environment = environment
+        if "verifier" in self.__dict__:
+            self.verifier.environment = environment
+
+    @cached_property
+    def verifier(self) -> Verifier:
+        """What looks at adaptations, and remembers the shapes that it has seen."""
+        from planner_reactor.analysis.adaptations import Verifier
+
+        return Verifier(self._environment, mode=self._mode)
+
+    @cached_property
+    def _forms(self) -> Forms:
+        from planner_reactor.analysis.forms import Forms
+
+        return Forms()
+
+    @cached_property
+    def _standing(self) -> Standing:
+        from planner_reactor.analysis.standing import Standing
+
+        return Standing()
+
+    def prepare(self) -> None:
+        """Load a part of what looking needs, once something is out, so that no step has to load all of it."""
+        if self._known and (name := next(self._parts, "")):
+            import_module(name)
 
     def examine(self, adaptation: Adaptation) -> Verdict:
         """May it be sent? If so it is taken to be under way."""
@@ -88,13 +125,13 @@ class Gate:
 
     def stand(self, clauses: Iterable[str]) -> None:
         """Another planner's reactions stand in the reactor."""
-        self._standing, self._known = Standing(), set()
+        self.__dict__.pop("_standing", None)
+        self._known = set()
         for reaction in self._forms.read("\n".join(clauses), file="<standing>"):
             self._standing.add(reaction)
             self._known |= set() if reaction.situation is None else {reaction.situation}
         self._unread.clear()
         self._under_way.clear()
-        self._held = None
         self._held = None
 
     # ------------------------------------------------------------------------------------- held until the verdict
@@ -161,6 +198,8 @@ class Gate:
 
 def reason(adaptation: Adaptation, verdict: Verdict) -> str:
     """Why an adaptation is withheld, with the steps that show it."""
+    from planner_reactor.analysis.labels import show_label
+
     situations = ", ".join(dict.fromkeys([*(c.situation for c in adaptation.changes), *adaptation.removed]))
     broken = [law for law in ("safe", "consistent", "atomic", "local", "bounded") if not getattr(verdict, law)]
     steps = "; ".join(show_label(label) for label in verdict.counterexample)

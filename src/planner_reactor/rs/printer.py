@@ -8,7 +8,6 @@ that is not finite has no notation, and comments of the text that a term came fr
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterable
 
 from planner_reactor.rs.grammar import ARITHMETIC, OPERATOR_OF, PREFIX_MINUS, stands_bare
@@ -140,6 +139,8 @@ def _constant_or_name(head: Head) -> str:
         case Number(value):
             return repr(value)
         case Text(text):
+            import json  # texts are rare
+
             return json.dumps(text, ensure_ascii=False)
 
 

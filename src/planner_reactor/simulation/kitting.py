@@ -11,7 +11,7 @@ from collections.abc import Callable
 
 from msgspec.structs import replace
 
-from planner_reactor.analysis.adaptations import Environment
+from planner_reactor.analysis.verdicts import Environment
 from planner_reactor.experiments.runs import the_domain
 from planner_reactor.link.messages import Perception, PerceptionKind
 from planner_reactor.planner.planner import Planner
