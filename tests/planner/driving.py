@@ -27,6 +27,7 @@ KITTING = WORKCELL / "kitting.itl"
 PAPERS = WORKCELL / "papers.itl"
 TRIED = Path(__file__).parent.parent / "logic" / "notation.itl"
 GREENHOUSE = Path(__file__).parent.parent.parent / "examples" / "greenhouse.itl"
+TENDING = GREENHOUSE.with_name("tending.itl")
 
 _CLAUSE = re.compile(r"^P\[(\d+)\] = (.*)$", re.MULTILINE)
 _SERVES = re.compile(r"^SIT\[(\w+)")

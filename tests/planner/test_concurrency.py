@@ -7,7 +7,7 @@ import pytest
 from planner_reactor.logic.domain import Domain
 from planner_reactor.logic.reader import read_domain
 from planner_reactor.planner import Planner
-from tests.planner.driving import Book, settle, texts
+from tests.planner.driving import TENDING, Book, planner_without, settle, texts
 
 TASK = """
 atp_assumption AQ() likelihood 0.1 monitor reaction;
@@ -106,3 +106,12 @@ def test_without_a_resource_nothing_takes_turns() -> None:
     planner = Planner(domain, relax="none")
     settle(planner, Book(domain))
     assert "(~((Work[a] & Work[b] & Work[c] & Look[a]) : SUCCEED" in texts(planner)["All"]
+
+
+def test_goals_that_have_nothing_in_common_are_planned_apart() -> None:
+    """Together they were more than the search could do: each choice for one was tried with every choice for the others."""
+    domain = read_domain(TENDING.read_text())
+    planner = planner_without(domain, ["SHARP"], verify=False)
+    settle(planner, Book(domain))
+    assert planner.ideal, planner.impossible
+    assert "(Gauge[lathe, x1] & REASSERT[UnloadMill]<x2>) : (Store[x1] & Gauge[mill, x2])" in texts(planner)["Tending"]

@@ -15,7 +15,7 @@ from msgspec.structs import replace
 from planner_reactor.logic.allen import ALL
 from planner_reactor.logic.formulas import Atom, Term, variables
 from planner_reactor.planner.beliefs import Beliefs, told_apart
-from planner_reactor.planner.plan import Link, Plan, Result, Step, Unnamed
+from planner_reactor.planner.plan import END, Link, Plan, Result, Step, Unnamed
 from planner_reactor.planner.problem import Goal
 from planner_reactor.planner.theory import Theory
 
@@ -89,7 +89,8 @@ def pattern(theory: Theory, beliefs: Beliefs, plan: Plan, goals: Sequence[Goal])
                 terms.append((kind, numbers.setdefault(argument, len(numbers))))
             else:
                 terms.append(("variable", numbers[argument]) if type(argument) is int else ("", argument))
-        found.append((atom.predicate, tuple(terms), goal.relation, goal.consumer, goal.condition))
+        condition = -1 if goal.consumer == END else goal.condition
+        found.append((atom.predicate, tuple(terms), goal.relation, goal.consumer, condition))
     return tuple(found)
 
 

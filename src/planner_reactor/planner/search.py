@@ -52,7 +52,8 @@ class Search:
 
     def solve(self) -> Work[Plan | None]:
         """The plan, or None if there is none (or none was found within `NODES` choices)."""
-        found = yield from self._deepen(self._goals())
+        goals = self._goals()
+        found = (yield from self._one_by_one(goals)) or (yield from self._deepen(goals))
         found = found and self._threats.resolve() and is_founded(self.plan, self.problem)
         found = found and (yield from share_out(self.problem.theory.domain, self.plan))
         return self.plan if found else None
@@ -64,6 +65,23 @@ class Search:
         return [Goal(atom, NAMED["encompasses"], WHOLE, n) for n, atom in enumerate(self.problem.goals)]
 
     # ------------------------------------------------------------------------------- control of the search
+
+    def _one_by_one(self, goals: list[Goal]) -> Work[bool]:
+        """Goals that share no variable one after the other, if several need actions; False (and nothing done) if that
+        comes to nothing, since what one does may be in another's way.
+        """
+        groups, ground = self._groups(goals)
+        groups = sorted([*groups, *([goal] for goal in ground)], key=lambda group: group[0].condition)
+        wanted = [group for group in groups if self._least(group)]
+        if len(wanted) < 2 or self.problem.maintained:
+            return False
+        mark = self.plan.mark()
+        rest = [goal for group in groups if group not in wanted for goal in group]
+        if (yield from self._solve_groups(wanted)) and (yield from self._deepen(rest)) and self._threats.resolve():
+            return True
+        self.plan.undo(mark)
+        self.nodes, self.consulted.gave_up = 0, False
+        return False
 
     def _deepen(self, goals: list[Goal]) -> Work[bool]:
         """Extend the plan so that the goals hold, trying with ever more steps."""
