@@ -6,7 +6,7 @@ BIN    := $(VENV)/bin
 PIP    := $(BIN)/python -m pip --disable-pip-version-check install --quiet --constraint constraints.txt
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test check figures bench docs conformance laws mutants fuzz nets chaos clean
+.PHONY: help demo test check figures bench docs conformance laws mutants fuzz crashes damage soak nets chaos clean
 
 help:  ## list the targets
 	@grep -hE '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## */  make \1\t/' | expand -t 22
@@ -42,6 +42,12 @@ mutants: $(VENV)/dev.done  ## every small change to the rules meets the tests; t
 
 fuzz: $(VENV)/dev.done  ## a million hostile texts, journals, frames and adaptations; resumes where it stopped
 	nice -n 10 $(BIN)/python -m tests.fuzz
+
+crashes: $(VENV)/dev.done  ## crash, power loss and cut link at every step of adaptations of every shape; resumes
+	nice -n 10 $(BIN)/python -m tests.crashes
+
+damage: $(VENV)/dev.done  ## a journal of a thousand adaptations, cut at every byte and with every bit flipped
+	nice -n 10 $(BIN)/python -m tests.reactor.damage
 
 nets: $(VENV)/dev.done  ## a thousand random nets, each also searched by SPIN (half an hour; needs spin and gcc)
 	SPIN_NETS=1000 $(BIN)/python -m pytest -q -s tests/analysis/test_networks.py -k each_random_net

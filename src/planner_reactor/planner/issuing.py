@@ -65,6 +65,7 @@ class _Parts(msgspec.Struct, eq=False):
     adds: list[int] = msgspec.field(default_factory=list)  # top-down
     given_up: tuple[str, ...] = ()
     strangers: dict[int, Stranger] = msgspec.field(default_factory=dict)
+    mode: Mode | None = None  # where roots go, which no other mode than drain can hold back
 
 
 class Issuer:
@@ -158,7 +159,7 @@ class Issuer:
         touched = frozenset(s.situation for s in gone)
         if self.holder(touched) is not None:
             return None
-        parts, monitors, used = _Parts(), dict(self.monitors), frozenset(self.model.uses)
+        parts, monitors, used = _Parts(mode="drain"), dict(self.monitors), frozenset(self.model.uses)
         before = tuple(self.model.snapshot([s.situation for s in gone]))
         label = self.model.roots.pop(root)
         parts.kills += [label] if label is not None else []
@@ -178,7 +179,7 @@ class Issuer:
         """An adaptation without the reactions that nobody here issued; None if there are none, or they stay."""
         if not self.strangers or self.under_way or self.refused_alone >= MOST_REFUSALS:
             return None
-        parts, monitors, used = _Parts(), dict(self.monitors), frozenset(self.model.uses)
+        parts, monitors, used = _Parts(mode="drain"), dict(self.monitors), frozenset(self.model.uses)
         parts.strangers, self.strangers = self.strangers, {}
         parts.kills += parts.strangers
         parts.removed += [stranger.situation for stranger in parts.strangers.values() if stranger.situation]
@@ -313,7 +314,7 @@ class Issuer:
             removed=tuple(parts.removed),
             kills=tuple(parts.kills),
             adds=tuple(reversed(parts.adds)),
-            mode=self.mode,
+            mode=parts.mode or self.mode,
             purpose=draft.purpose if draft else purpose,
             drops=tuple(sorted(used - after)) if used != after else (),
             adopts=tuple(sorted(after - used)) if used != after else (),

@@ -16,7 +16,7 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from math import isinf
+from math import inf, isinf
 from typing import Literal
 
 from msgspec.structs import replace
@@ -62,7 +62,7 @@ class Transaction:
     state: State = "draining"
     root: Root | None = None
     timer: Timer | None = None
-    surgery: float = 0.0  # when the first reaction was removed or added
+    surgery: float = inf  # when it was committed, or the first reaction was removed or added
     kills: list[int] = field(default_factory=list)  # done
     adds: list[int] = field(default_factory=list)  # done
     reason: str = ""  # why it came to nothing, if its deadline is not why: a word
@@ -172,7 +172,7 @@ class Transactions:
                     transaction.reason = "disk"
                     transaction.problem = f"it cannot be made durable: {problem}"
                     return None
-                transaction.state = "committed"
+                transaction.state, transaction.surgery = "committed", self._scheduler.now
                 return transaction
         return None
 
@@ -181,8 +181,7 @@ class Transactions:
         for transaction in self._by_root.values():
             wanted = transaction.adaptation.adds if added else transaction.adaptation.kills
             if label in wanted:
-                if not (transaction.kills or transaction.adds):
-                    transaction.surgery = self._scheduler.now
+                transaction.surgery = min(transaction.surgery, self._scheduler.now)
                 (transaction.adds if added else transaction.kills).append(label)
                 return True
         return False
@@ -247,9 +246,10 @@ def refuse_unsafe_kills(adaptation: Adaptation, killed: tuple[Reaction, ...]) ->
         if reaction.situation is not None:
             if reaction.situation not in held:
                 raise RefusedError("structure", f"P[{reaction.label}] is killed, {reaction.situation} is not drained")
-        elif not reaction.monitors and adaptation.mode == "versions":
+        elif not reaction.monitors and adaptation.mode != "drain":
+            why = "it has no versions" if adaptation.mode == "versions" else "it may assert again before it is killed"
             raise RefusedError(
-                "structure", f"P[{reaction.label}] serves no situation: it has no versions, expected mode drain"
+                "structure", f"P[{reaction.label}] serves no situation: {why}, expected mode drain"
             )
         elif not reaction.monitors and not (reaction.asserts and held.issuperset(reaction.asserts)):
             raise RefusedError(

@@ -199,8 +199,7 @@ class Laws:
                 self.breach(1, f"adaptation {transaction.adaptation.id} added reactions beside those that it removes")
 
     def _half(self, transaction: Transaction) -> None:
-        begun = transaction.kills or transaction.adds
-        if begun and self._reactor.scheduler.now > transaction.surgery + GRACE:
+        if self._reactor.scheduler.now > transaction.surgery + GRACE:
             self.breach(1, f"adaptation {transaction.adaptation.id} was half applied for some time")
 
     def _bounded(self) -> None:
