@@ -17,9 +17,9 @@ from planner_reactor.cli.application import NAME
 from planner_reactor.cli.later import LATER
 from planner_reactor.logic import itl_syntax
 from planner_reactor.rs import grammar, states
-from planner_reactor.simulation.counters import ROWS
 from tests.laws.telling import laws, non_laws
 from tests.mutants.telling import mutants_table
+from tests.simulation.telling import counters_table, figures
 from tests.transcripts import examples
 
 ROOT = Path(__file__).parent.parent
@@ -146,16 +146,9 @@ def _property_words() -> str:
     return "\n".join([*lines, ""])
 
 
-def _counters() -> str:
-    """What a campaign of chaos has to bring about, by rows of the fault table."""
-    lines = ["| row | what happens | counter |", "|---|---|---|"]
-    for counter, (row, text) in ROWS.items():
-        lines.append(f"| {row or '–'} | {text} | {counter.lstrip('0123456789 ')} |")
-    return "\n".join([*lines, ""])
-
-
 MADE: Mapping[str, Callable[[], str]] = {
-    "counters": _counters,
+    "chaos": figures,
+    "counters": counters_table,
     "examples": _examples,
     "grammar": lambda: _indented_in(grammar),
     "imports": _imports,

@@ -8,6 +8,7 @@ situations, bodies, drains) is not kept: a crash ends that, and the world is sen
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import lru_cache
 from zlib import crc32
 
 import msgspec
@@ -124,7 +125,13 @@ class Committed(msgspec.Struct, frozen=True):
         return tuple(s for s, assumptions in self.rests_on.items() if assumption in assumptions)
 
 
-def clauses_of(adaptation: Adaptation) -> dict[int, str]:
+def clauses_of(adaptation: Adaptation) -> Mapping[int, str]:
     """The clauses that an adaptation adds, by label, each in canonical print."""
-    program = parse_program(adaptation.definitions)
+    return _clauses(adaptation.definitions)
+
+
+@lru_cache(maxsize=64)
+def _clauses(definitions: str) -> Mapping[int, str]:
+    """Asked at COMMIT and at each recovery from a journal that still has it: the text is read once."""
+    program = parse_program(definitions)
     return {s.head[0].value: show(s) for s in program.schemas if s.name == REACTION}  # type: ignore[union-attr, misc]

@@ -7,11 +7,11 @@ the same (the ledger of adaptations).
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 import msgspec
 
-from planner_reactor.link.messages import Adaptation, Perception
+from planner_reactor.link.messages import Adaptation
 from planner_reactor.reactor.committed import Committed, clauses_of
 
 
@@ -29,7 +29,7 @@ class Pending(msgspec.Struct, frozen=True):
 
     adaptation: Adaptation
     nodes: Mapping[str, Node | None]
-    expected: str = ""  # "refused": it is wrong, and must be
+    wrong: str = ""  # what is wrong with it: then it must be refused
 
 
 Key = tuple[int, int]
@@ -49,6 +49,7 @@ class Book:
         self.issued: dict[Key, Adaptation] = {}
         self.counts: Counter[str] = Counter()
         self.wrong: list[str] = []  # answers that cannot be
+        self.outcomes: dict[Key, str] = {}  # what became of those that are not pending
         self._next_id = 1
         self._succeeds = False
 
@@ -81,7 +82,7 @@ class Book:
         coming = [n for p in self.pending.values() for n in p.nodes.values() if n]
         return not any(name in node.children for node in (*self.nodes.values(), *coming))
 
-    def issue(self, adaptation: Adaptation, nodes: Mapping[str, Node | None], expected: str = "") -> None:
+    def issue(self, adaptation: Adaptation, nodes: Mapping[str, Node | None], wrong: str = "") -> None:
         """It is in the book before it is sent."""
         self.counts["issued"] += 1
         key = (adaptation.epoch, adaptation.id)
@@ -90,16 +91,19 @@ class Book:
             self.counts["issued"] -= 1
             return
         self.issued[key] = adaptation
-        self.pending[key] = Pending(adaptation, nodes, expected)
+        self.pending[key] = Pending(adaptation, nodes, wrong)
 
     def answered(self, key: Key, outcome: str) -> bool:
-        """What became of it: applied, refused or timed out. False if nothing was asked."""
+        """What became of it: applied, refused or timed out. False if nothing was asked, or it was answered before."""
         if (found := self.pending.pop(key, None)) is None:
+            if outcome == "applied" != (before := self.outcomes.get(key, outcome)):
+                self.wrong.append(f"adaptation {key} is applied, and was {before} before")
             return False
         self.counts[outcome] += 1
+        self.outcomes[key] = outcome
         if outcome == "applied":
-            if found.expected == "refused":
-                self.wrong.append(f"adaptation {key} is wrong and was applied: {found.adaptation}")
+            if found.wrong:
+                self.wrong.append(f"adaptation {key} is wrong ({found.wrong}) and was applied: {found.adaptation}")
             self._apply(found)
         return True
 
@@ -115,15 +119,14 @@ class Book:
             self.clauses.pop(label, None)
         self.clauses |= clauses_of(adaptation)
 
-    def restarted(self, perception: Perception, dead: set[Key]) -> None:
-        """The reactor begins anew, and says which versions stand: what it had taken is settled by them."""
-        standing: dict[str, int] = dict(perception.values)  # type: ignore[arg-type]  # pairs
+    def settle(self, standing: Mapping[str, int], lost: Callable[[Key], bool]) -> None:
+        """Somebody says which versions stand: what is in them was applied, what was `lost` was not."""
         for key, found in list(self.pending.items()):
             after = {c.situation: c.base + 1 for c in found.adaptation.changes}
             after |= {s: self.versions.get(s, 0) + 1 for s in found.adaptation.removed}
-            if after and found.expected != "refused" and all(standing.get(s, 0) == v for s, v in after.items()):
+            if after and not found.wrong and all(standing.get(s, 0) == v for s, v in after.items()):
                 self.answered(key, "applied")
-            elif key in dead:
+            elif lost(key):
                 self.answered(key, "lost")
 
     def difference(self, committed: Committed) -> str:

@@ -9,14 +9,15 @@ from __future__ import annotations
 import argparse
 import hashlib
 import time
-from collections import Counter
+from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from pathlib import Path
 
 import msgspec
+from msgspec.structs import replace
 
-from planner_reactor.simulation.cases import Case, drawn
+from planner_reactor.simulation.cases import Case, Fault, drawn
 from planner_reactor.simulation.counters import ROWS, missing
 from planner_reactor.simulation.keeping import written
 from planner_reactor.simulation.running import Result, run
@@ -26,8 +27,8 @@ RESULTS = Path("out/chaos.jsonl")
 SECONDS = 1800.0
 """Of simulated time in which faults strike, in each case."""
 
-CELL_EVERY, TWICE_EVERY = 40, 25
-"""Of so many seeds one is the cell's; one is run twice."""
+CELL_EVERY, TWICE_EVERY, CROWD_EVERY = 6, 25, 100
+"""Of so many seeds one is the cell's; one is run twice, with jumps of the time of day; one has a crowd."""
 
 
 class Line(msgspec.Struct, frozen=True):
@@ -48,7 +49,13 @@ def sources() -> str:
 
 def case_of(seed: int, seconds: float = SECONDS) -> Case:
     """The case of a seed."""
-    return drawn("cell" if seed % CELL_EVERY == 0 else "workshop", seed, seconds)
+    case = drawn("cell" if seed % CELL_EVERY == 0 else "workshop", seed, seconds)
+    if seed % TWICE_EVERY == 1:
+        jumps = (Fault("jump", seconds * part) for part in (0.2, 0.4, 0.7))
+        case = replace(case, faults=(*case.faults, *jumps))
+    if seed % CROWD_EVERY == 2:
+        case = replace(case, faults=(*case.faults, Fault("crowd", seconds / 4, None, 42.0)))
+    return case
 
 
 def one(seed: int, seconds: float = SECONDS) -> Result:
@@ -71,24 +78,55 @@ def campaign(first: int, *, minutes: float, workers: int, seconds: float = SECON
                 yield future.result()
 
 
-def table(results: Iterable[Result]) -> str:
-    """What a campaign comes to."""
+class Sums(msgspec.Struct, frozen=True):
+    """What a campaign comes to. `hours` are simulated, by world; `cpu` is seconds; `inside` counts by kind of fault."""
+
+    sources: str
+    cases: int
+    hours: dict[str, float]
+    events: int
+    adaptations: int
+    inside: dict[str, int]
+    violations: int
+    cpu: float
+    rows: dict[str, int]
+
+
+def sums(results: Iterable[Result], digest: str = "") -> Sums:
+    """Add up."""
     found = list(results)
-    rows: Counter[str] = Counter()
-    inside: Counter[str] = Counter()
+    rows, inside = Counter[str](), Counter[str]()
+    hours: defaultdict[str, float] = defaultdict(float)
     for result in found:
         rows.update(result.rows)
-        inside.update(result.inside)
-    hours = sum(r.simulated for r in found) / 3600
+        for where, n in result.inside.items():
+            inside[where.partition(" at ")[0]] += n
+        hours[result.case.world] += result.simulated / 3600
+    return Sums(
+        sources=digest,
+        cases=len(found),
+        hours={world: round(h, 1) for world, h in sorted(hours.items())},
+        events=sum(r.events for r in found),
+        adaptations=sum(r.adaptations for r in found),
+        inside=dict(sorted(inside.items())),
+        violations=sum(not r.ok for r in found),
+        cpu=round(sum(r.cpu for r in found), 1),
+        rows={name: rows[name] for name in ROWS},
+    )
+
+
+def told(came: Sums) -> str:
+    """The same, for people."""
+    hours = ", ".join(f"{h:.0f} of the {world}" for world, h in came.hours.items())
     lines = [
-        f"{len(found)} cases, {hours:.0f} simulated hours, {sum(r.events for r in found)} events, "
-        f"{sum(r.cpu for r in found):.0f} s of processor time",
-        f"{sum(r.adaptations for r in found)} adaptations, {sum(inside.values())} faults struck inside one",
-        f"{sum(not r.ok for r in found)} cases with violations",
+        f"{came.cases} cases, {sum(came.hours.values()):.0f} simulated hours ({hours}), {came.events:,} events, "
+        f"{came.cpu:.0f} s of processor time",
+        f"{came.adaptations:,} adaptations, {sum(came.inside.values()):,} faults struck inside one",
+        f"{came.violations} cases with violations",
         "",
-        *(f"{rows[name]:9}  {text}{f' (row {row})' if row else ''}" for name, (row, text) in ROWS.items()),
+        *(f"{came.rows[name]:9}  {text}{f' (row {row})' if row else ''}" for name, (row, text) in ROWS.items()),
     ]
-    if absent := missing(rows):
+    if absent := missing(came.rows):
         lines += ["", f"NOT SEEN: {', '.join(absent)}"]
     return "\n".join(lines)
 
@@ -120,7 +158,7 @@ def main(arguments: list[str] | None = None) -> int:
     given = parser.parse_args(arguments)
     if given.seed is not None:
         result = one(given.seed)
-        print(table([result]), *result.violations, sep="\n")
+        print(told(sums([result])), *result.violations, sep="\n")
         return int(not result.ok)
     digest = sources()
     done = read(given.results, digest)
@@ -133,8 +171,6 @@ def main(arguments: list[str] | None = None) -> int:
             file.flush()
             if not result.ok:
                 print(f"seed {result.case.seed}:", *result.violations[:3], kept(result), sep="\n", flush=True)
-    print(table(done))
-    rows: Counter[str] = Counter()
-    for result in done:
-        rows.update(result.rows)
-    return int(bool(missing(rows)) or not all(r.ok for r in done))
+    came = sums(done, digest)
+    print(told(came))
+    return int(bool(missing(came.rows) or came.violations))

@@ -17,8 +17,8 @@ from planner_reactor.workcell.disturbances import DISTURBANCES
 World = Literal["workshop", "cell"]
 Kind = Literal[
     "crash", "power", "storm", "cut", "silent_reactor", "silent_planner", "planner", "leader", "stale", "full", "sync",
-    "halt", "flap", "unknown", "stuck", "noise", "raise", "hang", "drive", "jump", "crowd", "replay", "world",
-    "nothing",
+    "halt", "flap", "unknown", "stuck", "noise", "late", "raise", "hang", "failing", "drive", "jump", "crowd",
+    "replay", "version", "watchdog", "world", "nothing",
 ]  # fmt: skip
 Point = Literal[
     "received", "appending", "appended", "synced", "draining", "inhibited", "removed", "retired", "renewed", "added",
@@ -32,15 +32,21 @@ INSIDE: tuple[Kind, ...] = ("crash", "crash", "crash", "power", "power", "cut", 
 
 WEIGHTS: Mapping[Kind, int] = {
     "crash": 2, "power": 2, "storm": 1, "cut": 3, "silent_reactor": 2, "silent_planner": 2, "planner": 2, "leader": 2,
-    "stale": 2, "full": 1, "sync": 1, "halt": 1, "flap": 2, "unknown": 2, "stuck": 2, "noise": 1, "raise": 3, "hang": 1,
-    "drive": 3, "jump": 2, "replay": 2,
+    "stale": 2, "full": 1, "sync": 1, "halt": 1, "flap": 2, "unknown": 2, "stuck": 2, "noise": 2, "late": 2,
+    "raise": 3, "hang": 2, "drive": 3, "jump": 2, "replay": 2, "version": 1, "watchdog": 1,
 }  # fmt: skip
 
 CELL: Mapping[Kind, int] = {
-    "crash": 3, "power": 3, "cut": 2, "silent_reactor": 1, "silent_planner": 1, "full": 1, "sync": 1, "halt": 1,
-    "jump": 1, "world": 6,
+    "crash": 3, "power": 3, "cut": 2, "silent_reactor": 1, "silent_planner": 1, "planner": 4, "leader": 2, "full": 1,
+    "sync": 1, "halt": 1, "jump": 1, "world": 8,
 }  # fmt: skip
-"""The same for the cell, whose planner cannot be replaced while it stands."""
+"""The same for the cell."""
+
+FAILING = 0.05
+"""The part of the workshop's cases in which everything fails for a while."""
+
+HELD = "holding"
+"""What a crash of the cell waits for: something in the gripper."""
 
 
 class Fault(msgspec.Struct, frozen=True, omit_defaults=True):
@@ -63,28 +69,33 @@ class Case(msgspec.Struct, frozen=True, omit_defaults=True):
 
 
 def drawn(world: World, seed: int, seconds: float) -> Case:
-    """The case of a seed: a fault inside an adaptation every 90 s or so, and another at any time every 180 s."""
+    """The case of a seed: a fault inside an adaptation every 90 s or so, and another at any time every 180 s.
+
+    The cell's planner issues most of what it has to say in the first minutes: there half of the faults strike then.
+    """
     draw = Random(f"case {world} {seed}")
-    faults = []
-    kinds, weights = list(WEIGHTS), list(WEIGHTS.values())
-    every = 90.0 if world == "workshop" else 200.0
-    for _ in range(int(seconds / every)):
-        at = round(draw.uniform(5.0, seconds), 2)
-        kind = draw.choice(INSIDE)
-        if world == "cell" and kind == "planner":
-            kind = "crash"
-        faults.append(Fault(kind, at, draw.choice(POINTS), _lasts(draw)))
+    every, early = (90.0, seconds) if world == "workshop" else (200.0, min(60.0, seconds))
+
+    def when() -> float:
+        return round(draw.uniform(5.0, draw.choice((early, seconds))), 2)
+
+    faults = [
+        Fault(draw.choice(INSIDE), when(), draw.choice(POINTS), _lasts(draw)) for _ in range(int(seconds / every))
+    ]
+    kinds = WEIGHTS if world == "workshop" else CELL
+    for kind in draw.choices(list(kinds), list(kinds.values()), k=int(seconds / (2 * every))):
+        faults.append(Fault(kind, when(), None, _lasts(draw), _what(kind, draw)))
     if world == "cell":
-        kinds, weights = list(CELL), list(CELL.values())
-    for _ in range(int(seconds / (2 * every))):
-        (kind,) = draw.choices(kinds, weights)
-        what = f"A{draw.randrange(3)}" if kind in ("flap", "unknown", "stuck") else ""
-        if kind == "world":
-            what = draw.choice(sorted(DISTURBANCES))
-        faults.append(Fault(kind, round(draw.uniform(5.0, seconds), 2), None, _lasts(draw), what))
-    if world == "workshop" and draw.random() < 0.05:
-        faults.append(Fault("crowd", round(draw.uniform(5.0, seconds / 2), 2), None, 15.0))
+        faults.append(Fault("crash", round(draw.uniform(60.0, seconds), 2), None, 0.0, HELD))
+    elif draw.random() < FAILING:
+        faults.append(Fault("failing", round(draw.uniform(5.0, seconds / 2), 2), None, 1.0))
     return Case(world, seed, seconds, tuple(sorted(faults, key=lambda f: (f.at, f.kind))))
+
+
+def _what(kind: Kind, draw: Random) -> str:
+    if kind == "world":
+        return draw.choice(sorted(DISTURBANCES))
+    return f"A{draw.randrange(3)}" if kind in ("flap", "unknown", "stuck", "noise", "late") else ""
 
 
 def _lasts(draw: Random) -> float:

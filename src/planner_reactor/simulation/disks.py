@@ -57,7 +57,7 @@ class SimulatedDisk:
 
     def crash(self, random: Random) -> None:
         """The power goes: of what was pending, some beginning is there."""
-        kept = random.randint(0, len(self.pending))
+        kept = random.choice((0, len(self.pending), random.randint(0, len(self.pending))))
         self.torn += kept < len(self.pending)
         self.durable += self.pending[:kept]
         self.pending = b""

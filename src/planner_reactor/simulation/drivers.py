@@ -15,6 +15,7 @@ from typing import Any
 from msgspec.structs import replace
 
 from planner_reactor.runtime import Host
+from planner_reactor.runtime.host import BasicProcess
 
 
 class Drivers:
@@ -23,18 +24,22 @@ class Drivers:
     def __init__(self, base: Host, counts: Counter[str]) -> None:
         self.counts = counts
         self.live: dict[int, Generator[Any, Any, Any]] = {}
+        self._takes_back: dict[int, Callable[[], object]] = {}
+        self.closed = 0  # abandoned because the process was gone
         self._sent = 0
         self.host = Host(base.name)
         self.host.functions = base.functions
         self.host.assumptions = base.assumptions
+        self.host.cautions = base.cautions
         self.host.world = base.world
+        self.host.watchdog = base.watchdog
         for name, process in base.processes.items():
-            self.host.processes[name] = replace(process, routine=partial(self._run, process.routine))
+            self.host.processes[name] = replace(process, routine=partial(self._run, process))
 
-    def _run(self, routine: Callable[..., Any], *arguments: Any) -> Any:
+    def _run(self, process: BasicProcess, *arguments: Any) -> Any:
         self.counts["sent"] += 1
         try:
-            begun = routine(*arguments)
+            begun = process.routine(*arguments)
         except Exception:
             self.counts["failed"] += 1
             raise
@@ -44,6 +49,8 @@ class Drivers:
         self._sent += 1
         number = self._sent
         self.live[number] = driven = self._drive(number, begun)
+        if process.abandon is not None:
+            self._takes_back[number] = partial(process.abandon, *arguments)
         return driven
 
     def _drive(self, number: int, begun: Generator[Any, Any, Any]) -> Generator[Any, Any, Any]:
@@ -59,13 +66,16 @@ class Drivers:
             raise
         finally:
             del self.live[number]
+            self._takes_back.pop(number, None)
             self.counts[outcome] += 1
 
     def close(self) -> int:
         """The process is gone: everything it commanded is abandoned; how much that was."""
-        running = dict(self.live)
+        running, taken_back = dict(self.live), dict(self._takes_back)
         for number, command in running.items():
             command.close()
+            taken_back.get(number, lambda: None)()
             if self.live.pop(number, None) is not None:  # it had not begun
                 self.counts["abandoned"] += 1
+        self.closed += len(running)
         return len(running)

@@ -14,9 +14,11 @@ from msgspec.structs import replace
 
 from planner_reactor.link.messages import Adaptation, Change, Mode
 from planner_reactor.simulation.books import Book, Node
-from planner_reactor.simulation.workshop import ASSUMPTIONS, BEAT
+from planner_reactor.simulation.sensors import ASSUMPTIONS, PERIOD
+from planner_reactor.simulation.workshop import BEAT
 
 NAMES = tuple(f"s{n}" for n in range(8))
+CROWD = "crowd"
 MODES: tuple[Mode, ...] = ("drain", "drain", "versions", "wait")
 DEADLINE = 60.0
 """Seconds that an adaptation is given, so that a run can come to rest."""
@@ -48,8 +50,8 @@ class Improviser:
         draft = Draft()
         self._label(draft, f"Delay[{BEAT:g}] :; Beat")
         for name in ASSUMPTIONS:
-            self._label(draft, f"ASSUMONITOR[{name}, 3000]")
-            self._label(draft, f"HOLDMONITOR[{name}, 3000]")
+            self._label(draft, f"ASSUMONITOR[{name}, {1000 * PERIOD:g}]")
+            self._label(draft, f"HOLDMONITOR[{name}, {1000 * PERIOD:g}]")
         self._found(draft, NAMES[0])
         return self._issued(draft, "drain", "the beginning")
 
@@ -82,21 +84,18 @@ class Improviser:
 
     def crowd(self) -> Adaptation | None:
         """A reaction that asserts a situation over and over, each instance served at once (row 29)."""
-        name = NAMES[-1]
-        if not self.book.settled() or name in self.book.touched or name in self.book.nodes:
+        if not self.book.settled() or CROWD in self.book.touched or CROWD in self.book.nodes:
             return None
         draft = Draft()
-        label = self._label(draft, self._body(draft, name, ["Do[{s}, k, {n}, 20]"], spawns=True))
-        root = self._label(draft, f"Pause[0.01] :: ASSERT[{name}]")
-        self._change(draft, name, label, (), (), root, fresh=True)
+        label = self._label(draft, self._body(CROWD, ["Do[{s}, k, {n}, 40]"], spawns=True))
+        root = self._label(draft, f"Pause[0.0035] :: ASSERT[{CROWD}]")
+        self._change(draft, CROWD, label, (), (), root, fresh=True)
         return self._issued(draft, "drain", "a crowd")
 
     def disperse(self) -> Adaptation | None:
         """The crowd goes."""
-        node = self.book.nodes.get(NAMES[-1])
-        if not self.book.settled() or node is None or NAMES[-1] in self.book.touched:
-            return None
-        if not self.book.removable(NAMES[-1]):
+        node = self.book.nodes.get(CROWD)
+        if node is None or CROWD in self.book.touched or not self.book.settled():
             return None
         draft = Draft()
         self._remove(draft, node)
@@ -146,12 +145,12 @@ class Improviser:
             steps.insert(0, f"Travel[{draw.uniform(0.0, 2.0):.2f}]")
         elif chance < 0.14:
             steps = ["Linger[{s}, k, {n}]"]
-        elif chance < 0.16:
+        elif chance < 0.145:
             steps.append("(Spin :; STOP)")
         rests = tuple(a for a in ASSUMPTIONS if draw.random() < 0.25)
-        return self._label(draft, self._body(draft, name, steps, draw.random() < 0.3)), children, rests
+        return self._label(draft, self._body(name, steps, draw.random() < 0.3)), children, rests
 
-    def _body(self, draft: Draft, name: str, steps: list[str], spawns: bool) -> str:
+    def _body(self, name: str, steps: list[str], spawns: bool) -> str:
         work = " : ".join([*steps, "SUCCEED[{s}, k]"]).replace("{s}", name)
         return f"SIT[{name}]<k> {'::' if spawns else ':;'} (~({work}) : FAIL[{name}, k])"
 
@@ -178,22 +177,31 @@ class Improviser:
 
     def _wrong(self, draft: Draft, mode: Mode) -> Adaptation:
         """The same with something wrong: nothing of it may be applied."""
-        sound = self._adaptation(draft, mode, "wrong")
-        definitions, adds = sound.definitions, sound.adds
-        stranger = f"P[{adds[-1] if adds else 0}] = SIT[{NAMES[0]}]<k> :; "
-        wrong = [
-            replace(sound, changes=tuple(replace(c, base=c.base + 1) for c in sound.changes), kills=(*sound.kills, -1)),
-            replace(sound, kills=(*sound.kills, self.book.next_label + 7)),
-            replace(sound, adds=adds[:-1], removed=("nowhere",)),
-            replace(sound, definitions=definitions + "P[ = "),
-            replace(sound, definitions=definitions + "Q[1] = STOP\n"),
-            replace(sound, definitions=stranger + "Nobody\n"),
-            replace(sound, definitions=f"P[{self.book.next_label}] = STOP :; ASSERT[elsewhere]\n", changes=(),
-                    kills=(), removed=(), adds=(self.book.next_label,)),
-            replace(sound, id=max(1, sound.id - 1 - len(self.book.pending)), changes=(), removed=(),
-                    kills=(self.book.next_label + 7,), adds=(), definitions=""),
-        ]  # fmt: skip
-        chosen = self.draw.choice(wrong)
+        wrong, chosen = self.draw.choice(list(self._spoilt(self._adaptation(draft, mode, "wrong")).items()))
         self.book.next_label += 1
-        self.book.issue(chosen, {}, expected="refused")
+        self.book.issue(chosen, {}, wrong)
         return chosen
+
+    def _spoilt(self, sound: Adaptation) -> dict[str, Adaptation]:
+        """What can be wrong with an adaptation."""
+        definitions, adds, new = sound.definitions, sound.adds, self.book.next_label
+        first = adds[-1] if adds else 0
+        used = max(1, sound.id - 1 - len(self.book.pending))
+        bare = replace(sound, changes=(), removed=(), kills=(), adds=(), definitions="")
+        return {
+            "versions": replace(
+                sound, changes=tuple(replace(c, base=c.base + 1) for c in sound.changes), kills=(*sound.kills, -1)
+            ),
+            "absent label": replace(sound, kills=(*sound.kills, new + 7)),
+            "absent situation": replace(sound, adds=adds[:-1], removed=("nowhere",)),
+            "no text": replace(sound, definitions=definitions + "P[ = "),
+            "no reaction": replace(sound, definitions=definitions + "Q[1] = STOP\n"),
+            "unknown process": replace(sound, definitions=f"P[{first}] = SIT[{NAMES[0]}]<k> :; Nobody\n"),
+            "one of a group": replace(
+                sound, definitions=f"{definitions}P[{new}] = SIT[{NAMES[0]}]<k> :; Nobody\n", adds=(*adds, new)
+            ),
+            "recursion": replace(bare, definitions=f"P[{new}] = P[{new}] | P[{new}]\n", adds=(new,)),
+            "parser bomb": replace(bare, definitions=f"P[{new}] = {'(' * 3000}STOP\n", adds=(new,)),
+            "served by nobody": replace(bare, definitions=f"P[{new}] = STOP :; ASSERT[elsewhere]\n", adds=(new,)),
+            "used id": replace(bare, id=used, kills=(new + 7,)),
+        }

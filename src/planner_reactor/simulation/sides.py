@@ -8,13 +8,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from planner_reactor.errors import DiskError
+from planner_reactor.errors import DiskError, RefusedError
 from planner_reactor.link.channels import PerceptionChannel
 from planner_reactor.link.codec import decode, encode
-from planner_reactor.link.messages import Adaptation, Perception
+from planner_reactor.link.messages import Adaptation, Enquiry, Perception
 from planner_reactor.link.session import Session
 from planner_reactor.reactor.journal import Journal
 from planner_reactor.reactor.reactor import Reactor
+from planner_reactor.reactor.storms import Intensity
 from planner_reactor.runtime import Budgets, Host, Scheduler
 from planner_reactor.simulation.books import Key
 from planner_reactor.simulation.disks import Moment, Mount, SimulatedDisk
@@ -26,7 +27,10 @@ from planner_reactor.trace import Trace
 AHEAD = 8
 """Perceptions under way at most: the others wait, and repeats of them are counted."""
 
-BUDGETS = Budgets(turns=2_000, processes=50_000)
+NO_KEY: Key = (-1, -1)
+"""Of what is no adaptation."""
+
+BUDGETS = Budgets(turns=100, processes=100_000)
 
 
 class ReactorSide:
@@ -34,7 +38,7 @@ class ReactorSide:
 
     def __init__(
         self, scheduler: Scheduler, base: Host, drivers: Drivers, disk: SimulatedDisk, wire: Wire, trace: Trace,
-        at: Callable[[Moment], object],
+        at: Callable[[Moment], object], *, intensity: Intensity | None = None,
     ) -> None:  # fmt: skip
         self.life = Life(scheduler)
         self.drivers = drivers
@@ -49,6 +53,7 @@ class ReactorSide:
             trace=trace,
             budgets=BUDGETS,
             journal=Journal(self.mount),
+            intensity=intensity,
         )
         self.session: Session | None = None
         self._base = base
@@ -92,10 +97,27 @@ class ReactorSide:
 
     def receive(self, messages: list[bytes]) -> None:
         """Messages of the planner, in order."""
-        for message in messages:
-            adaptation = decode(message)
-            if isinstance(adaptation, Adaptation) and self.life.alive:
-                self.reactor.receive(adaptation)
+        for message in map(decode, messages):
+            if not self.life.alive:
+                return
+            match message:
+                case Adaptation():
+                    self.reactor.receive(message)
+                case Enquiry():
+                    self._answer(message)
+                case _:
+                    pass
+
+    def _answer(self, enquiry: Enquiry) -> None:
+        """How it stands; nothing if its epoch cannot be made durable (it will be asked again)."""
+        try:
+            standing = self.reactor.enquire(enquiry)
+        except RefusedError:
+            return
+        if self.session is not None:
+            self.pump()
+            self.session.send(encode(standing))
+            self.wire.pump("reactor")
 
 
 class PlannerSide:
@@ -107,9 +129,9 @@ class PlannerSide:
         self.sent: list[Key] = []
         self.dead: set[Key] = set()  # acknowledged by a reactor that is gone
 
-    def send(self, adaptation: Adaptation) -> None:
-        self.sent.append((adaptation.epoch, adaptation.id))
-        self.session.send(encode(adaptation))
+    def send(self, message: Adaptation | Enquiry) -> None:
+        self.sent.append((message.epoch, message.id) if isinstance(message, Adaptation) else NO_KEY)
+        self.session.send(encode(message))
         self.wire.pump("planner")
 
     def met(self) -> None:

@@ -7,15 +7,18 @@ events. Either way its process is gone, the disk is as it is, and after a while 
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Callable
 from typing import Any
 
 from planner_reactor.errors import DiskError
-from planner_reactor.link.codec import decode
-from planner_reactor.link.messages import Perception
+from planner_reactor.link.codec import LARGEST_STANDING, decode
+from planner_reactor.link.messages import Adaptation, Enquiry, Perception, Standing
+from planner_reactor.reactor.storms import Intensity
 from planner_reactor.runtime import Scheduler, VirtualClock
 from planner_reactor.simulation.books import Book
 from planner_reactor.simulation.cases import Case, Fault, Point
 from planner_reactor.simulation.clocks import TimeOfDay
+from planner_reactor.simulation.counting import Counting
 from planner_reactor.simulation.disks import Moment, SimulatedDisk
 from planner_reactor.simulation.drivers import Drivers
 from planner_reactor.simulation.improviser import Improviser
@@ -35,7 +38,12 @@ POINT_OF: dict[str, Point] = {
     "adaptation_timed_out": "timed_out", "draining": "draining", "inhibited": "inhibited", "removed": "removed",
     "retired": "retired", "renewed": "renewed", "added": "added", "uninhibited": "uninhibited",
 }  # fmt: skip
+OUTCOME: tuple[Point, ...] = ("applied", "refused", "timed_out")
+"""Points at which an outcome is certain, and not told yet."""
+
 OUTCOMES = {"adaptation_applied": "applied", "adaptation_refused": "refused", "adaptation_timed_out": "timed_out"}
+INTENSITY = Intensity(failures=40, window=10.0)
+"""Of failures, in cases in which everything fails for a while."""
 
 
 class Stage:
@@ -61,7 +69,10 @@ class Stage:
         self.calm = False
         self.armed: list[Fault] = []
         self.restarts: list[float] = []
+        self.counting = Counting(self)
+        self.intensity = INTENSITY if any(fault.kind == "failing" for fault in case.faults) else None
         self.shop.did = lambda s, i, v: self.watch.did(self.side, s, i, v)
+        self.shop.failed = self._failed
         self.shop.beat = self.watch.beat
         self.trace.sinks.append(self._traced)
 
@@ -77,12 +88,15 @@ class Stage:
             self._run(self.case.seconds)
             self._cease()
             self._run(self.case.seconds + CALM)
-        self._sum_up()
         self.rest()
         if self.side is not None:
             self.side.reactor.laws.check()
             self.side.end(power=False)
             self.watch.over(self.side)
+        self._sum_up()
+
+    def when_holding(self, strikes: Callable[[], object]) -> None:
+        """In a world with a gripper: as soon as it holds something."""
 
     def make_shop(self) -> Any:
         """The world of this stage."""
@@ -98,12 +112,7 @@ class Stage:
         self.watch.at_rest(self.side, sum(end.unacknowledged for end in self.wire.ends.values()))
 
     def _sum_up(self) -> None:
-        wire, shop, rows = self.wire.counts, self.shop.counts, self.rows
-        rows.update({f"4 frames {what.replace('_', '-')}": n for what, n in wire.items()})
-        rows["6 moves resumed after the drive was gone"] += shop["resumed"]
-        rows["12 deeds of a version whose successor is there"] += self.watch.late_versions
-        rows["14 deeds that raised"] += shop["raised"]
-        rows["14 deeds that hung"] += shop["hung"]
+        self.counting.sum_up()
         for wrong in self.shop.axis.wrong:
             self.watch.breach(11, wrong)
 
@@ -134,9 +143,11 @@ class Stage:
             return
         drivers = Drivers(self.shop.host, Counter())
         self.side = side = ReactorSide(
-            self.scheduler, self.shop.host, drivers, self.disk, self.wire, self.trace, self._moment
-        )
-        self.watch.began(side)
+            self.scheduler, self.shop.host, drivers, self.disk, self.wire, self.trace, self._moment,
+            intensity=self.intensity,
+        )  # fmt: skip
+        self.counting.begins()
+        self.watch.began(side, self.shop.read_anew())
         if not side.start():
             self.rows["27 no start on a full disk"] += 1
             side.end(power=False)
@@ -145,35 +156,50 @@ class Stage:
             return
         assert side.session is not None
         self.watch.gave[side.session.incarnation] = side.sent
+        self.watch.stands(side)
+        self.restarts = [t for t in self.restarts if t > self.scheduler.now - 5.0] + [self.scheduler.now]
+        self.rows["32 restarts in a storm"] += len(self.restarts) > 3
+        if side.reactor.halted:
+            self._release_later()
 
     def down(self, *, power: bool) -> None:
         """The reactor's process is gone."""
         if (side := self.side) is None:
             return
         self.side = None
-        if side.end(power=power):
-            self.rows["13 commands abandoned by a crash"] += 1
+        self.rows["13 commands abandoned by a crash"] += side.end(power=power)
         self.watch.pause()
         self.watch.over(side)
         if power:
-            torn = self.disk.torn
-            self.disk.crash(self.draw)
-            self.rows["3 writes torn"] += self.disk.torn - torn
+            self._power_goes()
         self.scheduler.call_after(self.draw.choice((0.1, 1.0, 5.0)), self.begin_reactor)
+
+    def _power_goes(self) -> None:
+        pending, durable = self.disk.pending, self.disk.durable
+        self.disk.crash(self.draw)
+        kept = len(self.disk.durable) - len(durable)
+        self.rows["3 writes torn"] += 0 < kept < len(pending)
+        self.rows["3 writes lost"] += 0 == kept < len(pending)
 
     def _moment(self, moment: Moment) -> None:
         if moment != "replaced" and self.side is not None:
             self.at_point(moment)
 
+    def _release_later(self) -> None:
+        """People come, sooner or later."""
+        self.scheduler.call_after(self.draw.uniform(1.0, 30.0), self.release)
+
     def release(self) -> None:
         """The reset after a halt; somebody tries again if the journal cannot say so."""
-        if self.side is not None and self.side.session is not None and self.side.reactor.halted:
-            self.watch.pause()
-            try:
-                self.side.reactor.reset()
-            except DiskError:
-                self.rows["27 no reset on a full disk"] += 1
-                self.scheduler.call_after(1.0, self.release)
+        if self.side is None or self.side.session is None or not self.side.reactor.halted:
+            return
+        self.watch.pause()
+        self.shop.dog.reset()
+        try:
+            self.side.reactor.reset()
+        except DiskError:
+            self.rows["27 no reset on a full disk"] += 1
+            self.scheduler.call_after(1.0, self.release)
 
     # -- the planner's side
 
@@ -184,8 +210,16 @@ class Stage:
         self.planners += 1
         self.planner = PlannerSide(self.planners, self.wire)
         self.wire.plug("planner", self.planner.session)
+        self.planner_begins(self.planner)
+
+    def planner_begins(self, planner: PlannerSide) -> None:
+        """It has its book; in the place of the first there may be another (`take_over`)."""
         for pending in self.book.pending.values():
-            self.planner.send(pending.adaptation)
+            planner.send(pending.adaptation)
+
+    def take_over(self) -> None:
+        """Who begins next is another planner."""
+        self.book.take_over()
 
     def end_planner(self) -> None:
         """The planner's process is gone; its book is on disk."""
@@ -201,9 +235,9 @@ class Stage:
             self.send(adaptation)
         self.scheduler.call_after(self.draw.uniform(2.0, 24.0), self._think)
 
-    def send(self, adaptation: object) -> None:
-        if self.planner is not None and adaptation is not None:
-            self.planner.send(adaptation)  # type: ignore[arg-type]  # what the improviser drew
+    def send(self, message: Adaptation | Enquiry) -> None:
+        if self.planner is not None:
+            self.planner.send(message)
 
     # -- the link
 
@@ -220,10 +254,13 @@ class Stage:
         planner = self.planner
         assert planner is not None
         for message in messages:
-            perception = decode(message)
-            assert isinstance(perception, Perception)
-            if self.planner is planner and self.watch.new(planner.session.peer, perception):
-                self._heard(perception)
+            told = decode(message, largest=LARGEST_STANDING)
+            if self.planner is not planner:
+                break
+            if isinstance(told, Standing):
+                self.stands(told)
+            elif isinstance(told, Perception) and self.watch.new(planner.session.peer, told):
+                self._heard(told)
         if self.side is not None:
             self.scheduler.soon(self._pump)
 
@@ -231,16 +268,27 @@ class Stage:
         if self.side is not None:
             self.side.pump()
 
+    def stands(self, standing: Standing) -> None:
+        """A planner that enquired is told how the reactor stands; the improviser never asks."""
+
     def _heard(self, perception: Perception) -> None:
         assert self.planner is not None
         self.rows["10 perceptions acted on"] += 1
         if perception.kind == "restarted":
-            self.book.restarted(perception, self.planner.dead)
+            self.restarted(perception)
         elif (outcome := OUTCOMES.get(perception.kind)) is not None:
-            number = int(perception.subject)
-            self.book.answered((perception.epoch, number), outcome)
+            self.book.answered((perception.epoch, int(perception.subject)), outcome)
             self.rows[f"answers: {perception.cause or outcome}"] += 1
+            if outcome == "refused":
+                self.rows["23 refusals told with their reason"] += bool(perception.cause)
+                if not perception.cause:
+                    self.watch.breach(10, f"a refusal without a reason: {perception}")
             self.at_point("told")
+
+    def restarted(self, perception: Perception) -> None:
+        """What the reactor had taken is settled by the versions that stand."""
+        assert self.planner is not None
+        self.book.settle(dict(perception.values), self.planner.dead.__contains__)  # type: ignore[arg-type]  # pairs
 
     # -- faults
 
@@ -252,45 +300,36 @@ class Stage:
         else:
             strike(self, fault)
 
+    def _failed(self, situation: str) -> None:
+        if self.side is not None:
+            pending = self.side.reactor.transactions.pending_situations
+            self.rows["10 deeds that failed in what is being changed"] += situation in pending
+
     def _traced(self, event: Event) -> None:
-        self._count(event)
+        self.counting.event(event)
+        self.watch.event(event)
+        if event.kind == "halted":
+            self.watch.pause()
+            self._release_later()
         if (point := POINT_OF.get(event.kind)) is None or self.side is None:
             return
         if point == "added" and self.side.reactor.restoring:
             self.at_point("restoring")
-        elif point in ("received", "applied", "refused", "timed_out") or self.under_way:
+        elif point == "received" or point in OUTCOME or self.under_way:
             self.at_point(point)
-
-    def _count(self, event: Event) -> None:
-        """What the fault table asks for and no fault brings about by itself."""
-        rows, kind = self.rows, event.kind
-        if kind == "adaptation_applied":
-            self._applied(event.data["id"])
-        elif kind == "adaptation_timed_out":
-            rows["8 situations that did not end in time"] += 1
-        elif kind == "draining" and self.side is not None:
-            instances = self.side.reactor.situations.named(event.data["situation"]).instances
-            rows["9 drained while instances overlapped"] += len(instances) > 1
-        elif kind in ("aborted", "error", "limit"):
-            rows["10 deeds that failed inside an adaptation"] += self.under_way
-        elif kind == "adaptation_refused":
-            asked = self.book.pending.get((self.book.epoch, event.data["id"]))
-            rows["11 groups refused as one"] += asked is not None and len(asked.adaptation.adds) > 1
-        elif kind == "zeno":
-            rows["16 livelocks"] += 1
 
     @property
     def under_way(self) -> bool:
         """Is an adaptation under way in the reactor?"""
         return self.side is not None and bool(self.side.reactor.transactions.under_way)
 
-    def _applied(self, number: int) -> None:
-        assert self.side is not None
-        transaction = self.side.reactor.last_applied
-        assert transaction is not None
-        assert transaction.adaptation.id == number
-        self.watch.applied(transaction.adaptation)
-        self.rows[f"applied by {transaction.adaptation.mode}"] += 1
+    def is_inside(self, fault: Fault) -> bool:
+        """Does it strike while an adaptation is taken and its outcome not told?"""
+        if self.side is None:
+            return False
+        counts = self.side.reactor.counts
+        in_hand = counts["received"] > counts["applied"] + counts["refused"] + counts["timed_out"]
+        return in_hand or fault.point in OUTCOME
 
     def at_point(self, point: Point) -> None:
         """A named point inside an adaptation: what was armed for it strikes now."""

@@ -5,15 +5,19 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING
 
+import msgspec
+
+from planner_reactor.errors import InputError
 from planner_reactor.link.messages import Adaptation
-from planner_reactor.simulation.cases import Fault, Kind
+from planner_reactor.link.session import VERSION, Frame
+from planner_reactor.simulation.cases import HELD, Fault, Kind
+from planner_reactor.simulation.improviser import CROWD
 from planner_reactor.simulation.lives import Crash
 
 if TYPE_CHECKING:
     from planner_reactor.simulation.stage import Stage
 
 DAY = 86_400.0
-AFTER_COMMIT = ("synced", "removed", "retired", "renewed", "added", "uninhibited")
 UNSEEN = ("jump", "nothing")
 """What must not be seen in the trace (law 16)."""
 
@@ -22,7 +26,7 @@ OUTSIDE_REACTOR = ("told",)
 
 def strike(stage: Stage, fault: Fault) -> None:
     """Let it happen now; what is raised unwinds the reactor."""
-    if fault.kind not in UNSEEN and (fault.point is not None or stage.under_way):
+    if fault.kind not in UNSEEN and stage.is_inside(fault):
         stage.inside[f"{fault.kind} at {fault.point or 'any time'}"] += 1
     stage.rows[f"struck: {fault.kind}"] += 1
     if fault.kind not in UNSEEN:
@@ -33,9 +37,11 @@ def strike(stage: Stage, fault: Fault) -> None:
 def _crash(stage: Stage, fault: Fault) -> None:
     if stage.side is None:
         return
+    if fault.what == HELD:
+        stage.when_holding(lambda: stage.down(power=False))
+        return
     power = fault.kind == "power"
-    if any(t.state == "committed" for t in stage.side.reactor.transactions.under_way):
-        stage.rows["2 crash between KILL and ADD"] += 1
+    stage.rows["2 crashes between KILL and ADD"] += stage.counting.half
     if fault.point is not None and fault.point not in OUTSIDE_REACTOR:
         raise Crash(power=power)
     stage.down(power=power)
@@ -43,14 +49,14 @@ def _crash(stage: Stage, fault: Fault) -> None:
 
 def _storm(stage: Stage, fault: Fault) -> None:
     """The process ends again and again, as soon as it has begun."""
-    stage.rows["32 restart storms"] += 1
 
     def again(left: int) -> None:
         if not stage.calm and left:
             stage.down(power=False)
+            stage.begin_reactor()
             stage.scheduler.call_after(0.3, lambda: again(left - 1))
 
-    again(5)
+    again(6)
 
 
 def _cut(stage: Stage, fault: Fault) -> None:
@@ -70,7 +76,10 @@ def _cut(stage: Stage, fault: Fault) -> None:
 
 def _planner(stage: Stage, fault: Fault) -> None:
     if stage.planner is not None:
-        stage.rows["1 planner ends with adaptations unanswered"] += bool(stage.book.pending)
+        if stage.side is not None:
+            keys = {(t.adaptation.epoch, t.adaptation.id) for t in stage.side.reactor.transactions.under_way}
+            mine = not keys.isdisjoint(stage.book.pending)
+            stage.rows["1 planners killed while their adaptation was under way"] += mine
         stage.end_planner()
 
 
@@ -78,13 +87,12 @@ def _leader(stage: Stage, fault: Fault) -> None:
     """Another planner takes over; the first does not know, and goes on talking for a while."""
     if (old := stage.planner) is None:
         return
-    stage.book.take_over()
+    stage.take_over()
     stage.end_planner()
 
     def talks(left: int) -> None:
         for frame in old.session.due(stage.scheduler.now):
-            stage.wire.carry("planner", frame)
-            stage.rows["7 frames of a planner whose time is over"] += 1
+            stage.wire.carry("planner", frame, over=True)
         if left and not stage.calm:
             stage.scheduler.call_after(1.0, lambda: talks(left - 1))
 
@@ -92,25 +100,46 @@ def _leader(stage: Stage, fault: Fault) -> None:
 
 
 def _stale(stage: Stage, fault: Fault) -> None:
-    """An adaptation that would be sound, from a planner whose time is over, by a door of its own."""
-    if stage.side is None or stage.side.session is None or stage.side.reactor.halted:
-        return
-    epoch = stage.side.reactor.journal.state.committed.epoch
-    if epoch:
-        late = Adaptation(id=10**6, epoch=epoch - 1, definitions=f"P[{10**6}] = Delay[1] :; Beat", adds=(10**6,))
-        stage.side.reactor.receive(late)
-        stage.rows["7 adaptations of a planner whose time is over"] += 1
+    """An adaptation that would be sound, of a planner whose time is over, by the session that is open."""
+    if stage.side is not None and stage.planner is not None and stage.side.reactor.journal.state.committed.epoch:
+        epoch = stage.side.reactor.journal.state.committed.epoch - 1
+        number = 10**6 + stage.rows["struck: stale"]
+        sound = f"P[{number}] = Delay[1] :; Beat"
+        stage.planner.send(Adaptation(id=number, epoch=epoch, definitions=sound, adds=(number,)))
 
 
 def _replay(stage: Stage, fault: Fault) -> None:
-    """Somebody sends again what was sent before, as it was or under another id with the same content."""
-    answered = [a for key, a in stage.book.issued.items() if key not in stage.book.pending]
+    """Somebody sends again what was sent before, by the session that is open, and something of his own beside it."""
+    answered = [a for key, a in stage.book.issued.items() if key in stage.book.outcomes]
     if stage.side is None or stage.side.session is None or not answered:
         return
-    stage.side.reactor.receive(stage.draw.choice(answered[-20:]))
-    stage.side.reactor.receive(stage.draw.choice(answered))
+    applied = [a for a in answered if stage.book.outcomes[a.epoch, a.id] == "applied"]
+    spent = stage.draw.choice(applied or answered)
+    for adaptation in (spent, stage.draw.choice(answered)):
+        stage.side.reactor.receive(adaptation)
+    before = stage.side.reactor.counts["refused"]
+    stage.side.reactor.receive(msgspec.structs.replace(spent, definitions="", adds=(), purpose="another"))
+    stage.rows["21 replays under another content refused"] += stage.side.reactor.counts["refused"] - before
     stage.side.session.receive(stage.draw.randbytes(40), stage.scheduler.now)
-    stage.rows["21 adaptations replayed"] += 2
+
+
+def _version(stage: Stage, fault: Fault) -> None:
+    """A frame of the next version of the link."""
+    if stage.side is None or (session := stage.side.session) is None:
+        return
+    frame = Frame(VERSION + 1, session.peer, session.incarnation, 1, 0, b"")
+    try:
+        taken = session.receive(msgspec.msgpack.encode(frame), stage.scheduler.now)
+    except InputError as refusal:
+        names = f"version {VERSION + 1}" in str(refusal) and str(VERSION) in str(refusal)
+        stage.rows["31 other versions of the link refused"] += names
+    else:
+        stage.watch.breach(10, f"a frame of another version was taken: {taken}")
+
+
+def _watchdog(stage: Stage, fault: Fault) -> None:
+    """The device stops the machine for a reason of its own."""
+    stage.shop.dog.tripped = True
 
 
 def _disk(stage: Stage, fault: Fault) -> None:
@@ -118,12 +147,13 @@ def _disk(stage: Stage, fault: Fault) -> None:
         stage.disk.fill(spare=stage.draw.choice((0, 9, 200)))
     else:
         stage.disk.sync_fails = True
-    done = stage.watch.totals["beats"]
-    before = stage.disk.refused
+    done, before = stage.watch.totals["beats"], stage.disk.refused
 
     def mend() -> None:
-        stage.rows["27 writes refused by the disk"] += stage.disk.refused - before
-        stage.rows["27 and the reactor went on"] += stage.watch.totals["beats"] > done
+        refused = stage.disk.refused - before
+        stage.rows["27 writes refused by the disk"] += refused
+        if refused:
+            stage.rows["27 beats while the disk took nothing"] += stage.watch.totals["beats"] - done
         stage.disk.mend()
 
     stage.scheduler.call_after(fault.seconds, mend)
@@ -135,55 +165,63 @@ def _halt(stage: Stage, fault: Fault) -> None:
     def press() -> None:
         if stage.side is not None and stage.side.session is not None and not stage.side.reactor.halted:
             stage.side.reactor.halt()
-            stage.watch.pause()
             stage.rows["halts"] += 1
-            stage.scheduler.call_after(max(1.0, fault.seconds), stage.release)
 
     stage.scheduler.soon(press)
 
 
 def _sensor(stage: Stage, fault: Fault) -> None:
-    shop, name = stage.shop, fault.what or "A0"
-    if fault.kind == "unknown":
-        shop.flags[name] = None
-    elif fault.kind == "stuck":
-        shop.stuck[name] = bool(stage.draw.random() < 0.5)
-    else:
-        shop.noise = 0.2
+    """A sensor goes wrong for a while: it knows nothing, sticks, slips, or is late."""
+    sensors, name = stage.shop.sensors, fault.what or "A1"
+    match fault.kind:
+        case "unknown":
+            sensors.truth[name] = None
+        case "stuck":
+            sensors.stuck[name] = (stage.draw.random() < 0.7, stage.draw.randrange(10**9))
+        case "late":
+            sensors.late["A1"] = 10.0 + fault.seconds
+        case _:
+            sensors.noisy.add(name)
+    before = stage.shop.counts[f"nothing of {name}"]
 
     def over() -> None:
-        shop.flags[name], shop.noise = True, 0.0
-        shop.stuck.pop(name, None)
-        stage.rows["25 sensors that failed"] += 1
+        sensors.truth[name] = True
+        sensors.stuck.pop(name, None)
+        sensors.late.pop("A1", None)
+        sensors.noisy.discard(name)
+        stage.rows["25 times that a sensor knew nothing"] += stage.shop.counts[f"nothing of {name}"] > before
 
-    stage.scheduler.call_after(fault.seconds + 5.0, over)
+    stage.scheduler.call_after(fault.seconds + 15.0, over)
 
 
 def _flap(stage: Stage, fault: Fault) -> None:
-    """A square wave of ten a second, and it holds in the end."""
+    """A square wave of ten a second, noticed by a process, and it holds in the end."""
     shop, name = stage.shop, fault.what or "A0"
 
     def turn(left: int) -> None:
-        shop.flags[name] = left % 2 == 0
-        stage.rows["26 times that an assumption flapped"] += 1
-        if left and not stage.calm:
+        going_on = left > 0 and not stage.calm
+        shop.flips(name, holds=not going_on or left % 2 == 0)
+        stage.rows["26 flips that were noticed"] += stage.side is not None
+        if going_on:
             stage.scheduler.call_after(0.1, lambda: turn(left - 1))
-        else:
-            shop.flags[name] = True
 
     turn(40)
 
 
 def _deeds(stage: Stage, fault: Fault) -> None:
-    if fault.kind == "raise":
-        stage.shop.raising += 3
-    else:
+    if fault.kind == "hang":
         stage.shop.hanging += 1
+    else:
+        stage.shop.raising += 3 if fault.kind == "raise" else 300
 
 
 def _drive(stage: Stage, fault: Fault) -> None:
-    stage.shop.link_drive(False)
-    stage.scheduler.call_after(fault.seconds, lambda: stage.shop.link_drive(True))
+    """The drive's link drops in the middle of a move."""
+    if stage.shop.axis.busy:
+        stage.shop.link_drive(False)
+        stage.scheduler.call_after(fault.seconds, lambda: stage.shop.link_drive(True))
+    elif not stage.calm:
+        stage.scheduler.call_after(0.7, lambda: _drive(stage, fault))
 
 
 def _jump(stage: Stage, fault: Fault) -> None:
@@ -192,20 +230,25 @@ def _jump(stage: Stage, fault: Fault) -> None:
 
 
 def _crowd(stage: Stage, fault: Fault) -> None:
-    if stage.side is None or stage.planner is None or (crowd := stage.brain.crowd()) is None:
-        return
-    stage.send(crowd)
+    """Ten thousand situations at once; then they go."""
+
+    def gather() -> None:
+        crowd = stage.brain.crowd() if stage.side is not None and stage.planner is not None else None
+        if crowd is not None:
+            stage.send(crowd)
+            stage.scheduler.call_after(fault.seconds, disperse)
+        elif not stage.calm and CROWD not in stage.book.nodes:
+            stage.scheduler.call_after(3.0, gather)
 
     def disperse() -> None:
         if stage.side is not None:
-            live = len(stage.side.reactor.situations.instances)
-            stage.rows["29 crowds of 500 or more"] += live >= 500
+            stage.rows["29 crowds of 10,000"] += len(stage.side.reactor.situations.instances) >= 10_000
         if (away := stage.brain.disperse()) is not None:
             stage.send(away)
-        elif stage.brain.book.nodes.get("s7") is not None:
+        if CROWD in stage.book.nodes or CROWD in stage.book.touched:
             stage.scheduler.call_after(5.0, disperse)
 
-    stage.scheduler.call_after(fault.seconds, disperse)
+    gather()
 
 
 def _world(stage: Stage, fault: Fault) -> None:
@@ -222,7 +265,8 @@ def _world(stage: Stage, fault: Fault) -> None:
 STRIKES: Mapping[Kind, Callable[[Stage, Fault], object]] = {
     "crash": _crash, "power": _crash, "storm": _storm, "cut": _cut, "silent_reactor": _cut, "silent_planner": _cut,
     "planner": _planner, "leader": _leader, "stale": _stale, "full": _disk, "sync": _disk, "halt": _halt,
-    "flap": _flap, "unknown": _sensor, "stuck": _sensor, "noise": _sensor, "raise": _deeds, "hang": _deeds,
-    "drive": _drive, "jump": _jump, "crowd": _crowd, "replay": _replay, "world": _world,
+    "flap": _flap, "unknown": _sensor, "stuck": _sensor, "noise": _sensor, "late": _sensor, "raise": _deeds,
+    "hang": _deeds, "failing": _deeds, "drive": _drive, "jump": _jump, "crowd": _crowd, "replay": _replay,
+    "version": _version, "watchdog": _watchdog, "world": _world,
     "nothing": lambda stage, fault: None,
 }  # fmt: skip

@@ -1,8 +1,9 @@
 """What is asserted after every event: laws that the reactor cannot ask by itself, and the ledgers between two sides.
 
-`reactor/laws.py` asks thirteen laws of one reactor. Here are those that span crashes or need both sides: 3 (by what the
-world saw), 9, 10 (with content), 12, 15 (by what the world saw), 17, and the ledgers of adaptations, perceptions and
-commands. 16 is asked by running a case twice.
+`reactor/laws.py` asks thirteen laws of one reactor. Here are those that span crashes or need both sides: 3, 14 and 15
+(by what the world saw), 9, 10 (with content), 12, 17, and the ledgers of adaptations, perceptions and commands. 16 is
+asked by running a case twice. Nothing here is asked of the reactor that it could get wrong by itself: what it applies
+is held against the planner's book, what it believes against what the sensors said.
 """
 
 from __future__ import annotations
@@ -13,8 +14,10 @@ from planner_reactor.link.messages import Adaptation, Perception
 from planner_reactor.reactor.laws import Violation
 from planner_reactor.runtime import Scheduler
 from planner_reactor.simulation.books import Book, Key
+from planner_reactor.simulation.sensors import CAUTIONS, PERIOD, Read, caution_of
 from planner_reactor.simulation.sides import ReactorSide
 from planner_reactor.simulation.workshop import BEAT
+from planner_reactor.trace import Event
 
 LATE = 0.5
 """Seconds by which a beat may be late: one round that waits its quantum, and rounding."""
@@ -34,24 +37,38 @@ class Watch:
         self.late_versions = 0
         self._versions: dict[tuple[str, int], int] = {}
         self._last_beat: float | None = None
+        self._side: ReactorSide | None = None
+        self._read: dict[str, Read] = {}  # what the sensors have said to this incarnation
+        self._failing: dict[str, bool] = {}  # what the planner was told of an assumption last
+        self._changed: dict[str, float] = {}  # and when that was another thing than before
 
     def breach(self, law: int, message: str) -> None:
         self.violations.append(Violation(law, self.scheduler.now, message))
 
     # -- one incarnation of the reactor
 
-    def began(self, side: ReactorSide) -> None:
+    def began(self, side: ReactorSide, read: dict[str, Read]) -> None:
+        """An incarnation begins; what sensors say to it comes to be in `read`."""
+        self._side = side
         self.commands = side.drivers.counts
+        self._read = read
+        self._failing, self._changed = {}, {}
         self._versions.clear()
         self._last_beat = None
         side.reactor.laws.ledgers.append(lambda: self._unbalanced(side))
 
+    def stands(self, side: ReactorSide) -> None:
+        """It stands on its journal, and begins with what that says to fail."""
+        self._failing = dict.fromkeys(side.reactor.failed, True)
+
     def over(self, side: ReactorSide) -> None:
         """Its violations and counts are ours."""
+        self._side = None
         if (problem := self._unbalanced(side)) or (problem := "live commands" if side.drivers.live else ""):
             self.breach(11, f"at the end of an incarnation: {problem}")
         self.violations += side.reactor.laws.violations
         self.totals.update({f"commands {what}": n for what, n in side.drivers.counts.items()})
+        self.totals["commands abandoned by itself"] += side.drivers.counts["abandoned"] - side.drivers.closed
         self.totals.update({f"adaptations {what}": n for what, n in side.reactor.counts.items()})
 
     def _unbalanced(self, side: ReactorSide) -> str:
@@ -93,6 +110,42 @@ class Watch:
         """It does not act by right."""
         self._last_beat = None
 
+    # -- what it believes
+
+    def event(self, event: Event) -> None:
+        """What the reactor has just done, by its trace."""
+        if event.kind == "entered":
+            self._serves(event.data["situation"])
+        elif event.kind in ("assumption_failure", "assumption_holds"):
+            self._believes(event.data["assumption"], failing=event.kind == "assumption_failure")
+
+    def _serves(self, situation: str) -> None:
+        """Law 14: no body begins that rests on what was read to fail for as long as its monitor may take."""
+        if self._side is None:
+            return
+        for assumption in self._side.reactor.journal.state.committed.rests_on.get(situation, ()):
+            read = self._read.get(assumption)
+            if read is None or read.failing_since is None:
+                continue
+            since = self.scheduler.now - read.failing_since
+            if since > PERIOD * caution_of(assumption).fails + LATE:
+                self.breach(14, f"{situation} is served, and {assumption} was read to fail for {since:.1f} s")
+
+    def _believes(self, assumption: str, *, failing: bool) -> None:
+        """Law 14: what is not known does not fail (row 25), and what flaps costs a change in a hold-off (row 26)."""
+        if self._failing.get(assumption, False) == failing:
+            return
+        self._failing[assumption] = failing
+        if (read := self._read.get(assumption)) is None:
+            return
+        caution, now = caution_of(assumption), self.scheduler.now
+        if failing and read.latest.count(False) < caution.fails:
+            self.breach(14, f"{assumption} is told to fail, of {list(read.latest)}")
+        if assumption in CAUTIONS and now - self._changed.get(assumption, -1e9) < caution.hold_off - LATE:
+            since = now - self._changed[assumption]
+            self.breach(14, f"{assumption} is told to change {since:.1f} s after the last time")
+        self._changed[assumption] = now
+
     # -- what the planner hears
 
     def new(self, incarnation: int, perception: Perception) -> bool:
@@ -121,22 +174,30 @@ class Watch:
             what = "nobody asked for" if key not in self.book.issued else "was answered before, or altered"
             self.breach(9, f"adaptation {key} was applied, which {what}")
 
-    def at_rest(self, side: ReactorSide | None, owed: int) -> None:
-        """Law 17: faults have ceased and the planner answered; everything is resolved, and both books agree."""
+    def agreed(self, side: ReactorSide | None) -> bool:
+        """There is a reactor, no answer was wrong, and if none is missing both books agree."""
         for wrong in self.book.wrong:
             self.breach(9, wrong)
         if side is None or not side.life.alive or side.session is None:
             self.breach(17, "there is no reactor")
+            return False
+        if not self.book.pending and (problem := self.book.difference(side.reactor.journal.state.committed)):
+            self.breach(11, problem)
+        return True
+
+    def at_rest(self, side: ReactorSide | None, owed: int) -> None:
+        """Law 17: faults have ceased and the planner answered; everything is resolved, and both books agree."""
+        if not self.agreed(side):
             return
+        assert side is not None
         reactor = side.reactor
         if self.book.pending or reactor.transactions.under_way:
             self.breach(17, f"adaptations {list(self.book.pending)} are not resolved")
-        if reactor.failed or list(reactor.situations.held):
+        if reactor.failed or reactor.halted or list(reactor.situations.held):
             held = [s.name for s in reactor.situations.held]
-            self.breach(17, f"{held} are held back, {list(reactor.failed)} are thought to fail")
+            halted = ", and it is halted" if reactor.halted else ""
+            self.breach(17, f"{held} are held back, {list(reactor.failed)} are thought to fail{halted}")
         if owed or len(side.perceptions):
             self.breach(17, f"{owed} messages and {len(side.perceptions)} perceptions are on the way")
-        if not self.book.pending and (problem := self.book.difference(reactor.journal.state.committed)):
-            self.breach(11, problem)
         if self._last_beat is None or self.scheduler.now - self._last_beat > BEAT + LATE:
             self.breach(12, "the reaction that beats is not heard")

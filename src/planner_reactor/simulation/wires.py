@@ -73,8 +73,8 @@ class Wire:
                 self.carry(name, frame)
             self._due[name] = self.scheduler.call_at(max(end.next_due(), now + 0.001), lambda: self.pump(name))
 
-    def carry(self, name: Name, frame: bytes) -> None:
-        """A frame of this end is under way; where to, and whether it comes, the weather says."""
+    def carry(self, name: Name, frame: bytes, *, over: bool = False) -> None:
+        """A frame of this end is under way; whether it comes, the weather says. `over`: who sends it is replaced."""
         weather, draw = self.weather, self._draw
         for _ in range(2 if weather.repeat and draw.random() < weather.repeat else 1):
             self._sent += 1
@@ -85,18 +85,20 @@ class Wire:
                 self.counts["lost"] += 1
             else:
                 delay = draw.uniform(0.001, weather.delay)
-                self.scheduler.call_after(delay, partial(self._comes, OTHER[name], number, frame))
+                self.counts["delayed"] += delay > TIMING.resend
+                self.scheduler.call_after(delay, partial(self._comes, OTHER[name], number, frame, over))
 
-    def _comes(self, to: Name, number: int, frame: bytes) -> None:
+    def _comes(self, to: Name, number: int, frame: bytes, over: bool) -> None:
         if (end := self.ends.get(to)) is None:
             return
         self.counts["reordered"] += number < self._latest[to]
         self._latest[to] = max(number, self._latest[to])
-        before, peer = end.counts["repeated"], end.peer
+        before, peer, stale = end.counts["repeated"], end.peer, end.counts["stale"]
         messages = end.receive(frame, self.scheduler.now)
         if end.peer != peer:
             self._met(to)
         self.counts["repeated"] += end.counts["repeated"] - before
+        self.counts["over"] += over and end.counts["stale"] > stale
         if messages:
             self._arrived(to, messages)
         self.pump(to)

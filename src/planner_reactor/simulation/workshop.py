@@ -2,7 +2,7 @@
 
 Its deeds say which reaction does them on behalf of which instance, so that whoever watches can tell by itself whether
 an instance saw two versions. They take their time, abort, raise, hang and linger; an axis moves by a drive whose link
-may drop; three assumptions are sensed by sensors that fail, flicker, stick, or know nothing.
+may drop; three assumptions are sensed by sensors that go wrong (`sensors`); a watchdog stops it if nobody kicks.
 """
 
 from __future__ import annotations
@@ -12,8 +12,8 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 from planner_reactor.runtime import Aborted, Host, Scheduler, Signal
+from planner_reactor.simulation.sensors import ASSUMPTIONS, Read, Sensors, caution_of
 
-ASSUMPTIONS = ("A0", "A1", "A2")
 LONGEST_DEED, LINGERING = 40.0, 200.0
 """Seconds that a deed takes at most, and one that hardly ends."""
 
@@ -44,38 +44,60 @@ class Axis:
             self.pose = target
 
 
+class Dog:
+    """A watchdog: not kicked for its `patience`, it has stopped the machine, until people reset it."""
+
+    period, patience = 2.0, 12.0
+
+    def __init__(self) -> None:
+        self.tripped = False
+        self.kicked: float | None = None
+
+    def kick(self, now: float) -> bool:
+        self.tripped = self.tripped or (self.kicked is not None and now - self.kicked > self.patience)
+        self.kicked = now
+        return not self.tripped
+
+    def reset(self) -> None:
+        self.tripped, self.kicked = False, None
+
+
 class Workshop:
-    """The world: what happens in it, and what is counted. `did` is told of each deed as it begins."""
+    """The world: what happens in it, and what is counted. `did` is told of each deed as it begins, `failed` of one that
+    did not work.
+    """
 
     def __init__(self, scheduler: Scheduler) -> None:
         self.scheduler = scheduler
         self.axis = Axis()
-        self.flags: dict[str, bool | None] = dict.fromkeys(ASSUMPTIONS, True)
-        self.stuck: dict[str, bool] = {}
-        self.noise = 0.0
         self.raising = self.hanging = 0
         self.failing = 0.03
         self.counts: Counter[str] = Counter()
         self.did: Did = lambda situation, instance, version: None
+        self.failed: Callable[[str], object] = lambda situation: None
         self.beat: Callable[[], object] = lambda: None
+        self.dog = Dog()
         self._draw = scheduler.random("workshop")
+        self.sensors = Sensors(scheduler.random("sensors"), lambda: scheduler.now, self.counts)
         self.host = self._host()
-
-    def sensed(self, name: str) -> bool | None:
-        """What the sensors say of an assumption."""
-        self.counts["sensed"] += 1
-        if name in self.stuck:
-            return self.stuck[name]
-        flag = self.flags[name]
-        return not flag if flag is not None and self.noise and self._draw.random() < self.noise else flag
 
     def calm(self) -> None:
         """Faults cease."""
         self.raising = self.hanging = 0
-        self.failing = self.noise = 0.0
-        self.stuck.clear()
-        self.flags = dict.fromkeys(ASSUMPTIONS, True)
+        self.failing = 0.0
+        self.sensors.mend()
         self.link_drive(True)
+
+    def read_anew(self) -> dict[str, Read]:
+        """What the sensors will have said to a reactor that begins."""
+        self.sensors.forget()
+        return self.sensors.read
+
+    def flips(self, name: str, *, holds: bool) -> None:
+        """An assumption changes, and a process notices."""
+        self.sensors.truth[name] = holds
+        self.sensors.reported(name, holds)
+        self.host.report(name, holds, "noticed")
 
     def link_drive(self, linked: bool) -> None:
         """The drive's link drops, or is there again; meanwhile somebody pushes the axis."""
@@ -89,8 +111,9 @@ class Workshop:
 
     def _host(self) -> Host:
         host = Host("workshop")
+        host.watchdog = self.dog
         for name in ASSUMPTIONS:
-            host.assumption(name)(lambda name=name: self.sensed(name))
+            host.assumption(name, caution_of(name))(lambda name=name: self.sensors.sense(name))
         host.process(window=(0.0, LONGEST_DEED), name="Do")(self._do)
         host.process(window=(0.0, LINGERING), name="Linger")(self._linger)
         host.process(window=(0.0, LONGEST_DEED), name="Pause")(self._pause)
@@ -107,6 +130,7 @@ class Workshop:
         if self.raising:
             self.raising -= 1
             self.counts["raised"] += 1
+            self.failed(situation)
             raise RuntimeError("a deed raises")
         if self.hanging:
             self.hanging -= 1
@@ -115,6 +139,7 @@ class Workshop:
         yield seconds
         if self._draw.random() < self.failing:
             self.counts["aborted"] += 1
+            self.failed(situation)
             raise Aborted("it did not work")
 
     def _linger(self, situation: str, instance: float, version: float) -> Iterator[Any]:
