@@ -73,7 +73,7 @@ class Late:
 
 
 @pytest.mark.parametrize("held", [0.0, 0.9, 1.1, 5.0])
-def test_adaptations_that_were_received_together_before_the_loop_was_held_up_are_in_time_or_refused(held: float) -> None:
+def test_adaptations_that_came_together_before_the_loop_was_held_up_are_in_time_or_refused(held: float) -> None:
     late = Late(8)
     late.outcomes()
     for which in range(8):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import sys
 from collections import Counter
 from random import Random
@@ -59,3 +60,24 @@ def calls_of_a_swap(segments: int) -> int:
         cell.take()
         counted[calls] += 1
     return counted.most_common(1)[0][0]
+
+
+def test_a_swap_leaves_no_cyclic_garbage() -> None:
+    """What it replaces is freed at once: no collector has to look for it among what stands (0.3 s of 10,000)."""
+    cell, random = SwapCell(10, VirtualClock()), Random(1)
+
+    def swap() -> None:
+        for _ in range(40):
+            cell.swap(random.choice(cell.segments), swapping=random.random() < 0.3)
+            cell.happen(random.choice(cell.segments))
+            cell.scheduler.run(cell.scheduler.now)
+            cell.take()
+
+    swap()
+    gc.collect()
+    gc.disable()
+    try:
+        swap()
+        assert gc.collect() == 0
+    finally:
+        gc.enable()

@@ -38,7 +38,7 @@ _BEGINNING = re.compile(b"\xa5(?=\x00)")
 """How a record begins: the length of none needs its first byte."""
 
 RENEW_AFTER = 256
-"""Records after which a snapshot takes their place."""
+"""Records after which a snapshot takes their place; more if it is larger: what it costs is shared among them."""
 
 Outcome: TypeAlias = Literal["applied", "refused", "timed_out"]
 
@@ -176,7 +176,7 @@ class Journal:
         for record in records:
             state = after(state, record)
         try:
-            if self.trusted and number + len(records) <= RENEW_AFTER:
+            if self.trusted and number + len(records) <= max(RENEW_AFTER, len(state.committed.clauses)):
                 self._disk.append(b"".join(framed(r, number + n) for n, r in enumerate(records, 1)))
                 if sync:
                     self._disk.sync()
