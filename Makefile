@@ -6,7 +6,7 @@ BIN    := $(VENV)/bin
 PIP    := $(BIN)/python -m pip --disable-pip-version-check install --quiet --constraint constraints.txt
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test check figures bench docs conformance laws mutants fuzz crashes damage soak nets chaos clean
+.PHONY: help demo test check figures bench docs conformance laws mutants fuzz crashes damage soak nets chaos schedules clean
 
 help:  ## list the targets
 	@grep -hE '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## */  make \1\t/' | expand -t 22
@@ -54,6 +54,9 @@ nets: $(VENV)/dev.done  ## a thousand random nets, each also searched by SPIN (h
 
 chaos: $(VENV)/dev.done  ## ten minutes of faults on two processes, inside adaptations too; goes on where it stopped
 	nice -n 10 $(BIN)/python -m planner_reactor.simulation
+
+schedules: $(VENV)/dev.done  ## a million random schedules of failures and returns on the planner; goes on where it stopped
+	nice -n 10 $(BIN)/python -m tests.schedules
 
 clean:  ## forget what was made
 	rm -rf out $(VENV) .pytest_cache .mypy_cache .ruff_cache .hypothesis .import_linter_cache

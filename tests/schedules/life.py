@@ -15,6 +15,7 @@ from pathlib import Path
 
 from planner_reactor.link.messages import Adaptation, PerceptionKind
 from planner_reactor.logic.domain import Domain
+from planner_reactor.logic.formulas import Atom
 from planner_reactor.planner import Planner
 from planner_reactor.planner.relaxing import MOST_DOUBLINGS
 from planner_reactor.planner.steps import Relax
@@ -34,9 +35,13 @@ def domain(name: str, returning: bool) -> Domain:
 
 
 @cache
-def ideal(name: str, returning: bool, relaxed: frozenset[str]) -> object:
-    """The reactor without these assumptions, planned from scratch."""
+def ideal(
+    name: str, returning: bool, relaxed: frozenset[str], told: frozenset[tuple[Atom, bool]] = frozenset()
+) -> object:
+    """The reactor without these assumptions, planned from scratch; `told` is what is known from perception requests."""
     planner = planner_without(domain(name, returning), sorted(relaxed), verify=False)
+    for atom, holds in sorted(told, key=str):
+        planner.perceive(perception("information", atom.predicate, *atom.arguments, "holds" if holds else "fails"))
     settle(planner)
     return image(planner)
 
