@@ -38,13 +38,16 @@ class Connector(msgspec.Struct, frozen=True):
 def interface(environment: Process, world: World, processes: Collection[Call] | None = None) -> tuple[Connector, ...]:
     """The sensory and motor processes of an environment, in the order of the text; `processes` says which (else all).
 
-    InputError for one that connects nothing.
+    A port that is read within the environment too is one of the interface if nothing else of the text uses the process
+    that reads it. InputError for a process that connects nothing.
     """
     outside = open_ports(network(environment, world).components, world)
     own = traffic(environment, world)
     if processes is None:
-        return tuple(c for call in _candidates(environment, world) for c in _connectors(call, world, own, outside))
-    found: list[Connector] = []
+        used = {c.name for schema in world.program.schemas for c in calls(schema.body)}
+        found = [c for call in _candidates(environment, world) for c in _connectors(call, world, own, outside)]
+        return tuple(c for c in found if c.outer in outside or c.process.name not in used)
+    found = []
     for call in processes:
         if not world.program.clauses(call.name):
             hint = nearest(call.name, world.program.names) or "expected a definition of the text"

@@ -18,12 +18,25 @@ from contextlib import suppress
 import typer
 from typer.main import get_command
 
-from planner_reactor.cli import evolutions, later, loops, measures, plans, programs, systems, verification
+from planner_reactor.cli import (
+    derivations,
+    evolutions,
+    later,
+    loops,
+    measures,
+    plans,
+    programs,
+    systems,
+    verification,
+)
 from planner_reactor.cli.application import NAME, ORDER, app
 from planner_reactor.cli.printing import print_json
 from planner_reactor.errors import PlannerReactorError, nearest
 
-__all__ = ["app", "evolutions", "later", "loops", "main", "measures", "plans", "programs", "systems", "verification"]
+__all__ = [
+    "app", "derivations", "evolutions", "later", "loops", "main", "measures", "plans", "programs", "systems",
+    "verification",
+]  # fmt: skip
 
 INTERRUPTED, PIPE_BROKEN = 128 + signal.SIGINT, 128 + 13
 """What a shell makes of SIGINT, and of SIGPIPE where there is one."""

@@ -8,7 +8,6 @@ from planner_reactor.cli.application import command
 from planner_reactor.errors import InputError
 
 LATER = {
-    "dynamics": ("derive action schemas from a model of the environment.", "FILE.rsl 'NAME[args]'"),
     "reactor": ("run the reactor as a process of its own.", ""),
     "planner": ("run the planner as a process of its own.", ""),
     "keys": ("make the keys with which both sides know each other.", ""),

@@ -26,7 +26,7 @@ from planner_reactor.analysis.conditions import text as condition_text
 from planner_reactor.analysis.denseness import Denseness, Failure, Netlist, opened
 from planner_reactor.analysis.interface import Connector, carried, interface, sensors
 from planner_reactor.analysis.limits import Limit, limit_set
-from planner_reactor.analysis.subnets import traffic
+from planner_reactor.analysis.subnets import subnet, traffic
 from planner_reactor.errors import InputError, nearest
 from planner_reactor.planner.exploiting import of_drift, of_motor, of_sensor
 from planner_reactor.planner.exploiting_text import DerivedAction, written
@@ -36,7 +36,7 @@ from planner_reactor.rs.facts import names
 from planner_reactor.rs.given import constant, process_with_values
 from planner_reactor.rs.parser import parse_process
 from planner_reactor.rs.printer import show
-from planner_reactor.rs.terms import Call, Parameter, Process, Program, Symbol, Value, calls
+from planner_reactor.rs.terms import Call, Par, Parameter, Process, Program, Symbol, Value, calls
 from planner_reactor.rs.unknowns import Unknown
 from planner_reactor.rs.vocabulary import Signature
 
@@ -69,9 +69,10 @@ def schemas(
     *,
     signatures: Mapping[str, Signature] | None = None,
     given: Mapping[str, float] | None = None,
+    goal: Collection[str] = (),
 ) -> tuple[DerivedAction, ...]:
     """The action schemas of an environment model: see `derive`."""
-    return derive(program, environment, interface, signatures=signatures, given=given).actions
+    return derive(program, environment, interface, signatures=signatures, given=given, goal=goal).actions
 
 
 def derive(
@@ -81,22 +82,41 @@ def derive(
     *,
     signatures: Mapping[str, Signature] | None = None,
     given: Mapping[str, float] | None = None,
+    goal: Collection[str] = (),
 ) -> Dynamics:
     """What an agent can do in an environment, from the text of its model.
 
     `environment` is the process, `TEM` or `TEM[p, a]`; `interface_processes` the sensory and motor processes (default:
     all definitions of the text that connect a port of the environment); `signatures` those of a host, `given` what open
-    names are. InputError for an environment or a process that the text does not define.
+    names are. With `goal`, ports of the agent's side, only what matters for these is looked at (Snet, X §7). InputError
+    for an environment, a process or a port that the text does not have.
     """
     world = program if isinstance(program, World) else opened(program, signatures, given=given)
     process = _environment(environment, world, given or {})
     named = None if interface_processes is None else [_called(name) for name in interface_processes]
     found = interface(process, world, named)
+    if goal:
+        process, found = _focused(process, found, goal, world)
     bounds = sensors(process, world, [c.outer for c in found if c.kind == "sensory"])
     limits = limit_set(process, world, sensors=bounds)
     nets = Netlist(process, world, *dict.fromkeys(c.process for c in found))
     uses, rejected = _uses(Model(process, world, nets, found, limits.limits))
     return Dynamics(written(uses, nets, found, FIRST_NUMBER), tuple(rejected), limits.limits, found, bounds)
+
+
+def _focused(
+    process: Process, found: tuple[Connector, ...], goal: Collection[str], world: World
+) -> tuple[Process, tuple[Connector, ...]]:
+    """The subnet that matters for these ports of the agent, and the interface to it."""
+    known = {c.inner: c.outer for c in found}
+    for port in goal:
+        if port not in known:
+            hint = nearest(port, known) or f"there are: {', '.join(sorted(known))}"
+            raise InputError(f"no port {port} of the interface, {hint}")
+    kept = subnet(process, world, [known[port] for port in goal])
+    whole: Process = kept[0] if len(kept) == 1 else Par(kept)
+    ports = traffic(whole, world).ports
+    return whole, tuple(c for c in found if c.outer in ports)
 
 
 def _called(text: str) -> Call:

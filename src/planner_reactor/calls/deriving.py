@@ -1,0 +1,136 @@
+"""`dynamics`: what an agent can do in an environment, from a model of it (X §5, §6)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+from planner_reactor.analysis.conditions import text
+from planner_reactor.analysis.denseness import Denseness, Failure, Netlist
+from planner_reactor.analysis.interface import Connector
+from planner_reactor.analysis.timing import Check, Stability, stability
+from planner_reactor.calls.evolving import Model, model
+from planner_reactor.calls.hosts import HostSource
+from planner_reactor.calls.inputs import names_in, read_text, unknown
+from planner_reactor.calls.processes import called
+from planner_reactor.planner.dynamics import Dynamics, derive
+from planner_reactor.planner.exploiting_text import DerivedAction
+from planner_reactor.rs.parser import read_program
+from planner_reactor.rs.printer import show
+from planner_reactor.rs.terms import Call, Parameter, Symbol
+from planner_reactor.rs.unknowns import Symbolic
+
+
+def dynamics(
+    file: str | Path,
+    process: str,
+    *,
+    host: HostSource | None = None,
+    given: Mapping[str, float] | None = None,
+    interface: str | Iterable[str] | None = None,
+    goal: str | Iterable[str] = (),
+    reaction: str | Iterable[str] = (),
+) -> dict[str, Any]:
+    """What an agent can exploit in the environment `process` of a file `*.rsl`.
+
+    `interface`: its sensory and motor processes (default: found from their ports); `goal`: ports of the agent's side,
+    what does not matter for them is left out; `reaction`: processes of the file whose timing is checked against the
+    environment; else as for `evolve`. Returns `dynamics` (the limit set: condition, term, kind, and the actions that
+    come of each entry, or why none does), `schemas` (text), `actions`, `interface`, `denseness` (of every port), and
+    `timing` with `stable` and `checks`. Raises what `evolve` raises.
+    """
+    subject = model(file, _with_arguments(file, process), host=host, given=given)
+    named = None if interface is None else [name for name in names_in(interface) if name]
+    ports = [name for name in names_in(goal) if name]
+    found = derive(subject.world, subject.call, named, goal=ports)
+    nets = Netlist(subject.call, subject.world, *dict.fromkeys(c.process for c in found.interface))
+    timing = _timing(subject, [name for name in names_in(reaction) if name], found)
+    return {
+        "dynamics": _entries(found),
+        "schemas": "\n\n".join(t for a in found.actions for t in (a.printed, a.text)),
+        "actions": [_action(action) for action in found.actions],
+        "interface": [_connector(c) for c in found.interface],
+        "sensors": list(found.sensors),
+        "denseness": [_density(port, nets.dense(port, {})) for port in nets.ports],
+        "timing": _told(timing),
+    }  # fmt: skip
+
+
+def _with_arguments(file: str | Path, process: str) -> str:
+    """`TEM` is `TEM[p, a]` if its definition says so."""
+    call = called(process)
+    if call.arguments:
+        return process
+    program, _ = read_program(read_text(file), file=str(file))
+    clauses = program.clauses(call.name)
+    heads = [h.name for h in clauses[0].head if isinstance(h, Parameter)] if clauses else []
+    return show(Call(call.name, tuple(Symbol(name) for name in heads))) if heads else process
+
+
+def _entries(found: Dynamics) -> list[dict[str, Any]]:
+    why = {(r.condition, r.term): r.why for r in found.rejected}
+    entries = []
+    for limit in found.limits:
+        key = text(limit.condition), show(limit.term)
+        actions = [a.name for a in found.actions if (a.condition, a.dynamic) == key]
+        entry = {"condition": key[0], "term": key[1], "kind": limit.kind, "actions": actions, "why": why.get(key)}
+        entries.append(entry)
+    return entries
+
+
+def _connector(found: Connector) -> dict[str, str]:
+    return {"process": found.process.name, "kind": found.kind, "agent": found.inner, "environment": found.outer}
+
+
+def _action(action: DerivedAction) -> dict[str, Any]:
+    plain = ("name", "role", "inputs", "outputs", "ports", "processes", "condition", "dynamic", "presumes", "label")
+    told: dict[str, Any] = {name: getattr(action, name) for name in plain}
+    told |= {"delay": value(action.delay), "resolution": value(action.resolution)}
+    return told | {"rs": action.rs_text, "schema": action.text, "printed": action.printed}
+
+
+def _density(port: str, found: Denseness | Failure) -> dict[str, Any]:
+    if isinstance(found, Failure):
+        return {"port": port, "dense": False, "process": found.process, "why": found.why}
+    return {
+        "port": port, "dense": True, "process": found.process, "form": found.form, "delay": value(found.delay),
+        "resolution": value(found.resolution), "trend": found.trend, "given": text(found.given),
+        "cut_by": list(found.cut_by), "restart": value(found.restart), "overlap": value(found.overlap),
+    }  # fmt: skip
+
+
+def _timing(subject: Model, names: list[str], found: Dynamics) -> Stability | None:
+    if not names:
+        return None
+    for name in names:
+        if not subject.world.program.clauses(called(name).name):
+            raise unknown("process", called(name).name, sorted(subject.world.program.names))
+    own = [called(name) for name in names]
+    processes = [*own, *dict.fromkeys(c.process for c in found.interface if c.process not in own)]
+    return stability(subject.call, processes, subject.world)
+
+
+def _told(timing: Stability | None) -> dict[str, Any] | None:
+    if timing is None:
+        return None
+    return {
+        "stable": timing.stable,
+        "loop": [value(end) for end in timing.loop],
+        "checks": [_check(c) for c in timing.checks],
+        "failures": [str(f) for f in timing.failures],
+    }
+
+
+def _check(check: Check) -> dict[str, Any]:
+    return {
+        "name": check.name, "port": check.port, "left": value(check.left), "right": value(check.right),
+        "holds": check.holds, "offender": check.offender, "text": str(check),
+    }  # fmt: skip
+
+
+def value(found: Any) -> Any:
+    """A duration as a number, or as text as far as names are open; None for one without end."""
+    if isinstance(found, Symbolic):
+        return repr(found)
+    return None if found in (float("inf"), None) else round(found, 9) if isinstance(found, float) else found
