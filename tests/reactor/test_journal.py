@@ -136,8 +136,9 @@ def test_snapshots_keep_a_journal_short_and_say_the_same(monkeypatch: pytest.Mon
     for record in history(100):
         journal.write(record)
         longest = max(longest, journal.records)
+        assert journal.records <= max(8, len(journal.state.committed.clauses))
         assert Journal(TornDisk(disk.durable)).recover().state == journal.state
-    assert longest == 8
+    assert 8 <= longest < len(list(history(100))) / 2
     assert journal.state == fold(history(100))
 
 
