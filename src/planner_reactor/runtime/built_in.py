@@ -19,16 +19,16 @@ def _test(setting: Setting) -> Test:
     def holds(frame: Frame) -> bool:
         return rule(*arguments(frame))
 
-    slots = setting.slots
+    slot = setting.slots[0] if setting.slots else -1
     match setting.name, setting.terms:
-        case ("GTR", (Variable(name), Number(int(bound)))) if (slot := slots(name)) >= 0:
+        case ("GTR", (Variable(), Number(int(bound)))) if slot >= 0:
 
             def above(frame: Frame) -> bool:
                 value = frame[slot]
                 return value > bound if value.__class__ is int else holds(frame)
 
             return Test(setting, above)
-        case ("LST", (Variable(name), Number(int(bound)))) if (slot := slots(name)) >= 0:
+        case ("LST", (Variable(), Number(int(bound)))) if slot >= 0:
 
             def below(frame: Frame) -> bool:
                 value = frame[slot]

@@ -29,17 +29,18 @@ from planner_reactor.rs.terms import (
     Seq,
     Spawn,
     Value,
+    Variable,
 )
 from planner_reactor.rs.vocabulary import BUILT_IN
 from planner_reactor.runtime import forks, instructions
 from planner_reactor.runtime.built_in import LEAVES
-from planner_reactor.runtime.definitions import Code, Definitions, blank
+from planner_reactor.runtime.definitions import Code, Definitions
 from planner_reactor.runtime.kernel import Kernel
 from planner_reactor.runtime.leaves import Mistake, Setting, Use
 from planner_reactor.runtime.outcomes import Control, Guards
 from planner_reactor.runtime.ports import Ports
 from planner_reactor.runtime.regions import Region, exported
-from planner_reactor.runtime.strands import OUTSIDE, SENSING, SERVING, Frame, Instruction, Where
+from planner_reactor.runtime.strands import OUTSIDE, SENSING, SERVING, UNBOUND, Frame, Instruction, Where
 from planner_reactor.runtime.values import Functions, frames, reader, tuples
 
 
@@ -76,7 +77,7 @@ class Compiler:
         body = _Body(self, _title(schema), tail=None if exporting else exits)
         entry = body.process(schema.body, region, exits, body.outside)
         body.straighten()
-        return Code(entry, blank(region.size - len(schema.head)))
+        return Code(entry, tuple(region.blank[len(schema.head) :]))
 
     def root(self, name: str, process: Process, bound: Mapping[str, Value]) -> tuple[Instruction, Frame]:
         """A process on its own: where it begins, and its frame. Its results are all that leave it."""
@@ -92,7 +93,7 @@ class Compiler:
         body = _Body(self, name, tail=None)
         entry = body.process(process, region, exits, body.outside)
         body.straighten()
-        return entry, [*bound.values(), *blank(region.size - len(bound))]
+        return entry, [*bound.values(), *region.blank[len(bound) :]]
 
 
 class _Body:
@@ -227,22 +228,31 @@ class _Body:
 
     def loop(self, term: Loop, region: Region, exits: Exits, where: Where) -> Instruction:
         sensing, serving = (self.sensing, self.serving) if where is self.outside else (where, where)
+        if self.opens(term.condition):
+            return self.service(term, region, exits, sensing, serving)
         again = instructions.Round(where)
         before = region.size
         hidden = Region(region)
         hidden.declare(term.body)
-        ends = Exits(again, again)
-        if self.opens(term.condition):
-            slot = region.new_slot()
-            closing = self.closing(slot, ends)
-            body = self.process(term.body, hidden, closing, serving)
-            leaf = self.process(term.condition, region, Exits(body, exits.ab), sensing)
-            again.head = self.opening(leaf, slot, closing)
-        else:
-            body = self.process(term.body, hidden, ends, serving)
-            again.head = self.process(term.condition, region, Exits(body, exits.ab), sensing)
+        body = self.process(term.body, hidden, Exits(again, again), serving)
+        again.head = self.process(term.condition, region, Exits(body, exits.ab), sensing)
         again.slots = _fresh(term.condition, region, before)
         return again.head
+
+    def service(self, term: Loop, region: Region, exits: Exits, sensing: Where, serving: Where) -> Instruction:
+        """`SIT :; B`, which comes and goes with adaptations: its frame knows its head, so that no code holds itself."""
+        held = region.new_slot()
+        again = instructions.Again(held, sensing)
+        before = region.size
+        hidden = Region(region)
+        hidden.declare(term.body)
+        slot = region.new_slot()
+        closing = self.closing(slot, Exits(again, again))
+        body = self.process(term.body, hidden, closing, serving)
+        leaf = self.process(term.condition, region, Exits(body, exits.ab), sensing)
+        region.blank[held] = head = self.opening(leaf, slot, closing)
+        again.slots = _fresh(term.condition, region, before)
+        return head
 
     def spawn(self, term: Spawn, region: Region, exits: Exits, where: Where) -> Instruction:
         sensing, serving = (self.sensing, self.serving) if where is self.outside else (where, where)
@@ -261,7 +271,7 @@ class _Body:
             spawn.opener = getattr(self.opening(head, slot, None), "control", None)
         spawn.body = self.process(term.body, hidden, ends, serving)
         spawn.slots = _fresh(term.condition, region, before)
-        spawn.head = fork.head = head
+        fork.head = head
         return fork
 
     # -- calls
@@ -272,25 +282,25 @@ class _Body:
         if call.name == "ABORT":
             return instructions.Fail(exits.ab)
         at = Where(where.within, where.zone, call.place or (where.within, len(self.leaves)))
-        failed = Mistake(self.kernel, call.name, exits.ab, at)
         control = self.compiler.controls.get(call.name)
         if control is None and call.name not in LEAVES:
-            return self.schema_call(call, region, exits, failed)
+            return self.schema_call(call, region, exits, at)
         signature = BUILT_IN[call.name] if control is None else control.signature
         if not (signature.takes(len(call.arguments)) and signature.returns(len(call.results))):
-            return failed
+            return Mistake(self.kernel, call.name, exits.ab, at)
+        functions = self.compiler.functions
+        own = call.arguments if control is None else ()  # what only the executer's own leaves look at
         setting = Setting(
             kernel=self.kernel,
             name=call.name,
             where=at,
             terms=call.arguments,
-            slots=region.slot,
-            arguments=tuples(call.arguments, region.slot, self.compiler.functions),
-            readers=tuple(reader(a, region.slot, self.compiler.functions) for a in call.arguments),
-            targets=tuple(region.slot(name) for name in call.results),
+            slots=tuple([region.slot(a.name) if isinstance(a, Variable) else -1 for a in own]),
+            arguments=tuples(call.arguments, region.slot, functions),
+            readers=tuple([reader(a, region.slot, functions) for a in own]),
+            targets=tuple([region.slot(name) for name in call.results]),
             ok=exits.ok,
             ab=exits.ab,
-            failed=failed,
         )
         leaf = LEAVES[call.name](setting, self.compiler.ports) if control is None else Use(setting, control)
         self.leaves.append(leaf)
@@ -303,7 +313,8 @@ class _Body:
             while isinstance(onward, instructions.Round) and not onward.slots and onward.head is not onward:
                 onward = leaf.ok = onward.head  # type: ignore[attr-defined]  # it has one
 
-    def schema_call(self, call: Call, region: Region, exits: Exits, failed: Mistake) -> Instruction:
+    def schema_call(self, call: Call, region: Region, exits: Exits, at: Where) -> Instruction:
+        failed = Mistake(self.kernel, call.name, exits.ab, at)
         definition = self.compiler.definitions.named(call.name)
         passed = instructions.Arguments(
             frames(call.arguments, region.slot, self.compiler.functions),
@@ -328,4 +339,5 @@ def _title(schema: Schema) -> str:
 def _fresh(condition: Process, region: Region, before: int) -> tuple[int, ...]:
     """The slots that a new round forgets: what the condition binds, and all that the loop has of its own."""
     bound = {region.slot(name) for name in exported(condition)}
-    return tuple(sorted(bound | set(range(before, region.size))))
+    own = {slot for slot in range(before, region.size) if region.blank[slot] is UNBOUND}
+    return tuple(sorted(bound | own))

@@ -14,7 +14,7 @@ import msgspec
 
 from planner_reactor.errors import InputError
 from planner_reactor.rs.terms import Parameter, Schema, Value
-from planner_reactor.runtime.strands import UNBOUND, Instruction
+from planner_reactor.runtime.strands import Instruction
 
 
 class Code(msgspec.Struct, frozen=True):
@@ -140,7 +140,3 @@ def _pattern(schema: Schema) -> tuple[tuple[int, tuple[int, ...]], tuple[Value, 
     places = tuple(i for i, h in enumerate(schema.head) if not isinstance(h, Parameter))
     constants = tuple(h.value for h in schema.head if not isinstance(h, Parameter))
     return (len(schema.head), places), constants
-
-
-def blank(size: int) -> tuple[Value, ...]:
-    return (UNBOUND,) * size

@@ -8,6 +8,8 @@ ended (N8).
 
 from __future__ import annotations
 
+from typing import Any
+
 from planner_reactor.runtime.instructions import enter, label_of
 from planner_reactor.runtime.kernel import Kernel
 from planner_reactor.runtime.outcomes import Guards, OpensBody
@@ -169,6 +171,7 @@ class ForkSpawn:
             return kernel.crowded(strand, self.ab)
         kernel.live += 1
         fork = open_fork(self, strand, first=False, decisive=False)
+        fork.head = self.head
         head = strand.child(self.head, strand.frame, fork, 0)
         fork.parts.append(head)
         fork.live = 1
@@ -180,15 +183,14 @@ class ForkSpawn:
 class SpawnBody:
     """A of `A::B` has stopped: a B with these bindings, and A again with fresh ones."""
 
-    __slots__ = ("body", "close", "head", "kernel", "opener", "slot", "slots", "where")
+    __slots__ = ("body", "close", "kernel", "opener", "slot", "slots", "where")
     silent = True
 
     def __init__(self, kernel: Kernel, slot: int, where: Where) -> None:
         self.kernel = kernel
         self.slots: tuple[int, ...] = ()
         self.body: Instruction = self
-        self.head: Instruction = self
-        self.close: Instruction = self
+        self.close: Any = None  # an instruction, if it opens bodies
         self.opener: OpensBody | None = None
         self.slot = slot
         self.where = where
@@ -205,7 +207,7 @@ class SpawnBody:
         for slot in self.slots:
             frame[slot] = UNBOUND
         strand.value = None
-        kernel.queue(strand, self.head)
+        kernel.queue(strand, fork.head)
         return None
 
     def _spawn(self, head: Strand, fork: Fork) -> None:

@@ -184,6 +184,25 @@ class Round:
         return self.head
 
 
+class Again:
+    """N8 for `SIT :; B`. Its beginning stands in the frame: code that leads to itself would be cyclic garbage."""
+
+    __slots__ = ("held", "slots", "where")
+    silent = True
+
+    def __init__(self, held: int, where: Where) -> None:
+        self.held = held
+        self.slots: tuple[int, ...] = ()
+        self.where = where
+
+    def run(self, strand: Strand) -> Instruction | None:
+        frame = strand.frame
+        for slot in self.slots:
+            frame[slot] = UNBOUND
+        head: Instruction = frame[self.held]  # type: ignore[assignment]  # nothing else is ever there
+        return head
+
+
 class CloseBody:
     """The end of what follows a control that opens bodies."""
 

@@ -12,12 +12,12 @@ from typing import Any
 import msgspec
 
 from planner_reactor.rs.expressions import EvaluationError, is_number
-from planner_reactor.rs.terms import Expression, Number, Value, Variable
+from planner_reactor.rs.terms import Expression, Number, Value
 from planner_reactor.runtime.instructions import enter
 from planner_reactor.runtime.kernel import Kernel
 from planner_reactor.runtime.outcomes import STOPPED, Control, OpensBody, Outcome
 from planner_reactor.runtime.strands import RUNNING, WAITING, Frame, Instruction, Strand, Where
-from planner_reactor.runtime.values import Reader, Slots, Tuples
+from planner_reactor.runtime.values import Reader, Tuples
 
 
 class Setting(msgspec.Struct, frozen=True, kw_only=True):
@@ -27,13 +27,16 @@ class Setting(msgspec.Struct, frozen=True, kw_only=True):
     name: str
     where: Where
     terms: tuple[Expression, ...]
-    slots: Slots
+    slots: tuple[int, ...]  # of each term that is a variable; -1 for others
     arguments: Tuples
-    readers: tuple[Reader, ...]
+    readers: tuple[Reader, ...]  # of each term, for the leaves below
     targets: tuple[int, ...]
     ok: Instruction
     ab: Instruction
-    failed: Mistake
+
+    @property
+    def failed(self) -> Mistake:
+        return Mistake(self.kernel, self.name, self.ab, self.where)
 
 
 class Mistake:
@@ -141,7 +144,7 @@ class Pass:
         (self._age,) = setting.readers
         (term,) = setting.terms
         self._fixed = term.value if isinstance(term, Number) else None
-        self._slot = setting.slots(term.name) if isinstance(term, Variable) else -1
+        (self._slot,) = setting.slots
 
     def run(self, strand: Strand) -> Instruction | None:
         age: Any = self._fixed if self._slot < 0 else strand.frame[self._slot]

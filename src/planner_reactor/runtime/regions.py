@@ -7,26 +7,30 @@ theirs (N8); what a definition binds does not reach this far, for a call binds i
 from __future__ import annotations
 
 from planner_reactor.rs.terms import Call, Loop, Process, Spawn, operands
+from planner_reactor.runtime.strands import UNBOUND, Frame
 
 
 class Region:
-    """Names and their slots, inside another region or at the top of a frame. `size` is that of the whole frame."""
+    """Names and their slots, inside another region or at the top of a frame. `size` is that of the whole frame.
 
-    __slots__ = ("_frame", "_outer", "_slots")
+    `blank` is the frame as it begins: nothing is bound, and it holds what code needs of itself (`hold`).
+    """
+
+    __slots__ = ("_outer", "_slots", "blank")
 
     def __init__(self, outer: Region | None = None) -> None:
         self._outer = outer
         self._slots: dict[str, int] = {}
-        self._frame: list[int] = [0] if outer is None else outer._frame
+        self.blank: Frame = [] if outer is None else outer.blank
 
     @property
     def size(self) -> int:
-        return self._frame[0]
+        return len(self.blank)
 
     def new_slot(self) -> int:
         """A slot without a name."""
-        self._frame[0] += 1
-        return self._frame[0] - 1
+        self.blank.append(UNBOUND)
+        return len(self.blank) - 1
 
     def bind(self, name: str) -> None:
         """Give the name a slot in this region."""

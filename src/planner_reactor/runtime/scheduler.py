@@ -72,8 +72,8 @@ class Timer:
 class Scheduler:
     """Runs actions in order of time. `now` is the present instant in seconds; it stands still while actions run."""
 
-    __slots__ = ("_attended", "_buckets", "_instants", "_present", "_soon", "_stale", "_stopped", "_streams", "_sweep_at",
-                 "clock", "now", "seed")  # fmt: skip
+    __slots__ = ("_attended", "_buckets", "_instants", "_present", "_soon", "_stale", "_stopped", "_streams",
+                 "_sweep_at", "clock", "now", "seed")  # fmt: skip
 
     def __init__(self, clock: Clock, *, seed: int = 0) -> None:
         self.clock = clock

@@ -142,6 +142,7 @@ class Fork:
         "due",
         "ended",
         "exits",
+        "head",
         "live",
         "ok",
         "parent",
@@ -161,6 +162,7 @@ class Fork:
         self.cause: tuple[int, str] | None = None  # of the leftmost part that aborted
         self.ended: list[tuple[int, bool, str]] = []  # parts of a `#` that have ended: index, outcome, cause
         self.due = False  # does it wait for its verdict?
+        self.head: Any = None  # of `::`: where its head begins again
 
     def strands(self) -> list[Strand]:
         """Its live strands, left to right."""
