@@ -10,6 +10,9 @@ longer than τ. What a component does in a round (`rounds`) decides it:
     Definition 3    x is (γi, τi)-dense, y locally (γo, τo)-dense with x: y is (γi + γo, max(τi, τo))-dense
     Definition 4    a source whose value changes by δ in each round is densely increasing or decreasing
 
+`age` is a bound that the paper does not have: resolutions add up in it, so that it says how old what is read may be;
+γ + max(τi, τo) does not say that (docs/decisions/0042).
+
 More than the paper has: waiting at another port is local processing that takes as long as that port is silent, so that
 several ports reduce to one (values taken side by side: the longest wait; one after the other: their sum). Delays that
 are upper bounds (Term) keep every claim; only AT then pays for what `::` no longer keeps apart: its silence grows by
@@ -84,6 +87,7 @@ class Denseness(msgspec.Struct, frozen=True):
     restart: Any = 0
     overlap: Any = 0
     most: Any = None
+    age: Any = 0
 
     @property
     def period(self) -> Any:
@@ -208,20 +212,25 @@ class Netlist:
     def _composed(self, port: Value, own: Local, supplied: Supplied, seen: tuple[Value, ...]) -> Denseness | Failure:
         process = self.name(self.writers(port)[0])
         stages: dict[Stage, None] = {}
-        delay, held, given = own.delay, [], list(own.given)
+        delay, held, given, age = own.delay, [], list(own.given), 0
+        before = False
         trends: dict[Unknown, Trend] = {}
         for takes in own.takes:
-            waits = []
+            waits, ages = [], []
             for taken, got in takes:
                 found = self.dense(str(taken), supplied, seen)
                 if isinstance(found, Failure):
                     return replace(found, port=port) if found.port == port else found
                 waits.append(found.delay)
+                ages.append(found.age)
                 held.append(found.resolution)
                 given += found.given
                 trends[got] = found.trend
                 stages.update(dict.fromkeys(found.stages))
             delay = delay + greatest(*waits)
+            kept = [a + greatest(0, *waits[:n], *waits[n + 1 :]) for n, a in enumerate(ages)]
+            age = greatest(*kept, *((age + greatest(*waits),) if before else ()))
+            before = True
         for asked in own.gives:
             delay = delay + self.busy(asked, supplied)
         resolution = own.resolution if own.resolution is not None else self.busy(port, supplied)
@@ -230,7 +239,7 @@ class Netlist:
             port, process, own.form, delay, greatest(resolution, least(*held)) if held else resolution,
             tuple(stages), tuple(p for takes in own.takes for p, _ in takes), own.value, own.change,
             _transferred(own, trends), tuple(dict.fromkeys(given)), own.cut_by, own.restart + (delay - own.delay),
-            own.overlap, own.most,
+            own.overlap, own.most, age + own.lag + resolution if own.takes else 0,
         )  # fmt: skip
 
     def busy(self, port: Value, supplied: Supplied) -> Any:

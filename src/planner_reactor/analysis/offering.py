@@ -29,6 +29,7 @@ class Local(msgspec.Struct, frozen=True):
     `takes` are those between two offers, one after the other; `gives` the ports at which it waits for a reader.
     `resolution` is None if it offers a value until somebody takes it. `restart` is the time to the first offer after it
     was begun anew, `most` a bound of |change|. It hands a value over at most `once`, or again and again (a STREAM).
+    `lag` is the time from its first take to its offer.
     """
 
     form: str
@@ -45,6 +46,7 @@ class Local(msgspec.Struct, frozen=True):
     overlap: Any = 0
     most: Any = None
     once: bool = False
+    lag: Any = 0
 
 
 class Refusal(msgspec.Struct, frozen=True):
@@ -109,12 +111,17 @@ def _sequential(port: Value, rounds: Rounds, way: Path) -> Local:
     return Local(
         form, delay, resolution, takes, tuple(p for phase in gap if phase.waits for p, _ in phase.gives), value,
         change, _trend(change, way.given, rounds) if not takes else "open", _given(rounds, way, (way,)),
-        rounds.cut_by, _time(before), 0, _most(change, way.given), until_taken,
+        rounds.cut_by, _time(before), 0, _most(change, way.given), until_taken, _since_taken(gap),
     )  # fmt: skip
 
 
 def _gap(phases: Sequence[Phase], here: int, there: int) -> list[Phase]:
     return list(phases[here + 1 : there]) if here < there else [*phases[here + 1 :], *phases[:there]]
+
+
+def _since_taken(phases: Sequence[Phase]) -> Any:
+    first = next((n for n, phase in enumerate(phases) if phase.takes), None)
+    return 0 if first is None else _time(phases[first + 1 :])
 
 
 def _time(phases: Sequence[Phase], *, least_time: bool = False) -> Any:
@@ -149,6 +156,7 @@ def _spawned(port: Value, rounds: Rounds, way: Path, body: Path) -> Local:
         tuple(phase.takes for phase in way.phases if phase.takes), (), value, None, "open",
         _given(rounds, body, (way, body)), rounds.cut_by, period + _time(before),
         greatest(0, offer.high + apart - shortest) if offer.high != inf else 0, None, bool(offer.gives),
+        _since_taken(way.phases) + _time(before),
     )  # fmt: skip
 
 
