@@ -55,13 +55,13 @@ def test_a_command_is_carried_out_once() -> None:
 def test_a_hand_takes_what_is_at_it_and_nothing_else() -> None:
     missed = lived("reaching", "OUT[g, 1] : IN[h]<x> : Equal[x, 0]")
     assert (missed.gauge.taken, missed.gauge.grips[0][1]) == (0, False)
-    taken = lived("reaching", "OUT[r, -3] : Delay[0.3] : OUT[g, 1] : IN[h]<x> : Equal[x, 1]", eps=0.0)
+    taken = lived("reaching", "OUT[r, -3] : Delay[0.3] : OUT[g, 1] : IN[h]<x> : Equal[x, 1]", eps=0.0, stride=5.0)
     assert (taken.ledger(), taken.gauge.grips[0][1]) == ({"arrived": 1, "there": 0, "taken": 1, "lost": 0}, True)
 
 
 def test_touch_is_felt_where_the_object_is() -> None:
     assert not lived("reaching", "IN[t]<v>", eps=0.0).gauge.touches
-    assert lived("reaching", "OUT[r, -3] : IN[t]<v>", eps=0.0).gauge.touches
+    assert lived("reaching", "OUT[r, -3] : IN[t]<v>", eps=0.0, stride=5.0).gauge.touches
 
 
 def test_a_belt_carries_parts_past_and_the_next_one_comes() -> None:
@@ -90,3 +90,7 @@ def test_every_port_of_an_interface_is_one_that_its_processes_use(kind: str) -> 
 def test_an_unknown_world_is_refused_with_the_nearest_name() -> None:
     with pytest.raises(InputError, match="did you mean tracking"):
         Surroundings(Scheduler(VirtualClock()), "traking", STARTS)
+
+
+def test_a_robot_goes_only_so_far_for_one_command() -> None:
+    assert lived("reaching", "OUT[r, -3]", stride=0.5).gauge.now["pr"] == 2.5

@@ -17,7 +17,7 @@ import msgspec
 from planner_reactor.logic.allen import compose, relations
 from planner_reactor.logic.domain import ActionSchema, Effect, Rule
 from planner_reactor.logic.formulas import Atom
-from planner_reactor.planner.plan import END, START, Link, Plan, Step, Use
+from planner_reactor.planner.plan import END, START, WHOLE, Link, Plan, Step, Use
 from planner_reactor.planner.problem import Consulted, Goal, Problem, Truth
 from planner_reactor.planner.theory import DEEPEST
 
@@ -105,10 +105,9 @@ class Supports(msgspec.Struct, eq=False):
         if not plan.bindings.unify(goal.atom.arguments, effect.atom.shifted(step.offset).arguments):
             return None
         maintained = effect.relation & ~_EARLIER != 0
-        if goal.consumer == END:
-            if maintained:
-                return None
-        elif not plan.order(step.number, goal.consumer, compose(effect.relation, goal.relation)):
+        if goal.consumer == (END if maintained else WHOLE):
+            return None
+        if goal.consumer != END and not plan.order(step.number, goal.consumer, compose(effect.relation, goal.relation)):
             return None
         atom = plan.bindings.ground(goal.atom)
         throughout = self._throughout(goal)

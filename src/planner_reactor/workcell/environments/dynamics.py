@@ -17,7 +17,8 @@ MODELS = ("tracking", "guarded_move", "belt")
 FIELD = 1.0
 """How far from where the camera looks an object may be and still be seen, on the line on which both live."""
 
-host = Host("dynamics")
+STRIDE = 0.5
+"""How far a robot goes for one command at most."""
 
 
 def model(name: str) -> str:
@@ -25,8 +26,26 @@ def model(name: str) -> str:
     return (files(__package__ or __name__) / f"{name}.rsl").read_text(encoding="utf-8")
 
 
-@host.process(window=(0.0, 0.0), means=f"~GTR[p - a, {FIELD}] : ~GTR[a - p, {FIELD}]")
-def InView(p: float, a: float) -> None:
-    """Is an object at p in view of a camera that looks at a?"""
-    if abs(p - a) > FIELD:
-        raise Aborted("not in view")
+def senses(field: float = FIELD, stride: float = STRIDE) -> Host:
+    """What the texts need: a camera that sees so far to either side, a robot that goes so far for one command."""
+    made = Host("dynamics")
+
+    @made.process(window=(0.0, 0.0), name="InView", means=f"~GTR[p - a, {field}] : ~GTR[a - p, {field}]")
+    def in_view(p: float, a: float) -> None:
+        """Is an object at p in view of a camera that looks at a?"""
+        if abs(p - a) > field:
+            raise Aborted("not in view")
+
+    @made.process(window=(0.0, 0.0), name="Comes")
+    def comes() -> None:
+        """The next object is there: for whoever observes."""
+
+    @made.function
+    def limited(step: float) -> float:
+        """The step that a motor takes when it is told to take this one."""
+        return max(-stride, min(stride, step))
+
+    return made
+
+
+host = senses()

@@ -23,17 +23,20 @@ from planner_reactor.rs.terms import Program, Value
 from planner_reactor.rs.vocabulary import BUILT_IN
 from planner_reactor.runtime import Executer, Label, Scheduler
 from planner_reactor.workcell.environments.dynamics import host as sight
-from planner_reactor.workcell.environments.dynamics import model
+from planner_reactor.workcell.environments.dynamics import model, senses
 
 TIMING: Mapping[str, float] = {
     "t0": 1.0, "ts0": 0.05, "ts1": 0.02, "gl": 0.02, "tl": 0.05, "gm": 0.02, "tm": 0.005,
     "tt0": 0.05, "tt1": 0.02, "gto": 0.02, "tto": 0.05, "gmv": 0.2, "tmv": 0.005,
     "tm0": 1.0, "gg": 0.05, "gh": 0.01, "th": 0.05, "gj": 0.02, "tj": 0.05, "gb": 0.05, "tb": 0.2,
+    "gap": 1.0,
 }  # fmt: skip
 """Seconds. A command is held for less than the quantum of STREAM, so that it is carried out once."""
 
-MEASURES: Mapping[str, float] = {"eps": 0.9, "mu": 0.5, "nu": 12.0, "start": 0.0, "width": 0.05}
-"""Lengths: one is what the camera sees to either side."""
+MEASURES: Mapping[str, float] = {
+    "eps": 0.9, "mu": 0.5, "nu": 12.0, "start": 0.0, "width": 0.05, "stride": 0.5, "field": 1.0,
+}  # fmt: skip
+"""Lengths. `field`: what the camera sees to either side; `stride`: how far the robot goes for one command at most."""
 
 
 class Kind(msgspec.Struct, frozen=True):
@@ -77,7 +80,8 @@ class Surroundings:
         self.starts = tuple(float(starts[name]) for name in self.kind.starts)
         self.gauge = Gauge(scheduler, dict(zip(self.kind.starts, self.starts, strict=True)), self.constants)
         program = program_of(self.kind, self.constants)
-        self.executer = Executer(program, scheduler=scheduler, host=sight, observer=self.gauge.saw)
+        host = senses(self.constants["field"], self.constants["stride"])
+        self.executer = Executer(program, scheduler=scheduler, host=host, observer=self.gauge.saw)
         self.ports = self.executer.share(*self.kind.ports)
         self.program = program
         self._most = 0
@@ -125,12 +129,13 @@ class Gauge:
         self.courses: dict[str, list[tuple[float, float]]] = {name: [(0.0, v)] for name, v in starts.items()}
         self.grips: list[tuple[float, bool]] = []
         self.touches: list[float] = []
+        self.acquired: list[float] = []
         self.moves = 0
         self.arrived, self.taken, self.lost = 1, 0, 0
 
     @property
     def there(self) -> int:
-        """How many objects are there: the next comes when one is gone, but only on a belt."""
+        """How many objects are there: one, or none until the belt brings the next."""
         return self.arrived - self.taken - self.lost
 
     def saw(self, label: Label) -> None:
@@ -142,7 +147,9 @@ class Gauge:
                 self._set("p", p + self._constants["mu"] * self.now["s"])
             case ("LST", _, "ab", _):
                 self.lost += 1
-                self._next()
+            case ("Comes", _, _, _):
+                self.arrived += 1
+                self._set("p", self._constants["start"])
             case ("COM", (str(port), value), _, _):
                 self._communicated(port, value)
             case _:
@@ -159,16 +166,11 @@ class Gauge:
                 self._set("pr", self.now["pr"] + step)
             case "taken", _:
                 self.taken += 1
-                self._next()
+                self.acquired.append(self._scheduler.now)
             case "held", _:
                 self.grips.append((self._scheduler.now, value == 1))
             case "tact", _:
                 self.touches.append(self._scheduler.now)
-
-    def _next(self) -> None:
-        if "s" in self.now:
-            self.arrived += 1
-            self._set("p", self._constants["start"])
 
     def _set(self, name: str, value: float) -> None:
         if self.now[name] != value:
@@ -186,10 +188,11 @@ class Gauge:
 
 
 def program_of(kind: Kind, constants: Mapping[str, float]) -> Program:
-    """The definitions of a world, of which all constants are numbers."""
+    """The definitions of a world, of which all constants are numbers; what a later text defines anew counts."""
     text = "\n".join(model(name) for name in kind.texts)
-    program = with_values(parse_program(text, file=kind.root), constants)
-    found = check_addition(Program(), program, signatures={**BUILT_IN, **sight.signatures})
+    last = {(schema.name, len(schema.head)): schema for schema in parse_program(text, file=kind.root).schemas}
+    program = with_values(Program(last.values()), constants)
+    found = check_addition(Program(), program, signatures={**BUILT_IN, **sight.signatures}, functions=sight.functions)
     if errors := [f for f in found if f.severity == "error"]:
         raise RSError(Source(text, kind.root).shown(errors))
     return program
