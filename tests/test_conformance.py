@@ -105,6 +105,10 @@ FOUND = {
             "DRAIN[t] ; Delay[1] ; FAIL[s, 1] ; Delay[1]",
         ),
     ),
+    "a string that a function doubles at every round comes to an end": Example(
+        "",
+        ("(IN[p]<x> :: OUT[p, twice(x)]) # Never", "OUT[p, red]"),
+    ),
 }
 """What campaigns have found, made small."""
 

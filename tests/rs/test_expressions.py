@@ -101,6 +101,20 @@ def test_integers_stay_small_whatever_is_calculated() -> None:
         evaluate(huge.arguments[0], {"n": 10**400}, {})
 
 
+def test_what_functions_of_a_host_make_is_bounded_too() -> None:
+    functions = {"twice": lambda x: 2 * x, "power": lambda x: 2**x}
+    call = parse_process("P[twice(text)]", bound=["text"])
+    assert isinstance(call, Call)
+    longest = "x" * (1 << 15)
+    assert evaluate(call.arguments[0], {"text": longest}, functions) == 2 * longest
+    with pytest.raises(EvaluationError, match="twice makes a string of more than 65536 characters"):
+        evaluate(call.arguments[0], {"text": longest + "x"}, functions)
+    power = parse_process("P[power(n)]", bound=["n"])
+    assert isinstance(power, Call)
+    with pytest.raises(EvaluationError, match="power makes an integer of more than 256 bits"):
+        evaluate(power.arguments[0], {"n": 256}, functions)
+
+
 def test_values_of_a_host_that_cannot_be_compared_do_no_harm() -> None:
     class Odd:
         def __eq__(self, other: object) -> bool:

@@ -3,8 +3,8 @@
 Arithmetic is on numbers, ordering on two numbers or two strings, `==` and `/=` on any two values; a host's
 pure functions may be applied. A symbol is its own name. Whatever cannot be evaluated raises
 `EvaluationError`: for the process that wanted the value this is an abort with cause "error", never a crash.
-Integers are bounded and results finite, so that no text can make a number that eats the memory. Nothing here
-binds a name: see `scope`.
+Integers and strings are bounded and results finite, also those of functions, so that no text can make a value that
+eats the memory. Nothing here binds a name: see `scope`.
 """
 
 from __future__ import annotations
@@ -30,6 +30,9 @@ from planner_reactor.rs.unknowns import Applied, Symbolic, equal
 
 LARGEST_INTEGER_BITS = 256
 """Integers beyond this size are an error; floats beyond their range are too."""
+
+LONGEST_STRING = 1 << 16
+"""Characters; a function of the host that returns more has failed. `twice` doubles a string at every round."""
 
 
 class EvaluationError(PlannerReactorError, ValueError):
@@ -121,12 +124,17 @@ def _arithmetic(sign: str, left: Value, right: Value) -> int | float:
         raise EvaluationError(f"{left!r} is divided by zero") from None
     except OverflowError:
         raise EvaluationError(f"{left!r} {sign} {right!r} is too large") from None
-    if isinstance(result, int):
-        if result.bit_length() > LARGEST_INTEGER_BITS:
-            raise EvaluationError(f"{sign} makes an integer of more than {LARGEST_INTEGER_BITS} bits")
-    elif isinstance(result, float) and not isfinite(result):
+    if isinstance(result, float) and not isfinite(result):
         raise EvaluationError(f"{left!r} {sign} {right!r} is not a finite number")
+    _check_size(sign, result)
     return result
+
+
+def _check_size(maker: str, value: Value) -> None:
+    if isinstance(value, int) and value.bit_length() > LARGEST_INTEGER_BITS:
+        raise EvaluationError(f"{maker} makes an integer of more than {LARGEST_INTEGER_BITS} bits")
+    if isinstance(value, str) and len(value) > LONGEST_STRING:
+        raise EvaluationError(f"{maker} makes a string of more than {LONGEST_STRING} characters")
 
 
 def applied(name: str, arguments: list[Value], functions: Mapping[str, Callable[..., Value]]) -> Value:
@@ -138,6 +146,8 @@ def applied(name: str, arguments: list[Value], functions: Mapping[str, Callable[
     if any(isinstance(argument, Symbolic) for argument in arguments):
         return Applied(name, tuple(arguments))
     try:
-        return function(*arguments)
+        result = function(*arguments)
     except Exception as error:
         raise EvaluationError(f"{name}({', '.join(map(repr, arguments))}) failed: {error}") from error
+    _check_size(name, result)
+    return result
