@@ -7,6 +7,7 @@ import pytest
 
 from planner_reactor.link.messages import Adaptation
 from planner_reactor.reactor.adaptation import script
+from planner_reactor.reactor.assumptions import Assumptions
 from planner_reactor.rs.printer import show
 from tests.reactor.driving import FIRST, SECOND, Bench, change
 
@@ -53,7 +54,7 @@ def test_each_mode_is_a_script() -> None:
     assert texts == {
         "drain": "DRAIN[part] : COMMIT[2] : KILL[2] : KILL[3] : POST[4] : UNINHIBIT[part]",
         "wait": "WAITINHIBIT[part] : COMMIT[2] : KILL[2] : KILL[3] : POST[4] : UNINHIBIT[part]",
-        "versions": "COMMIT[2] : RETIRE[2] : KILL[3] : RENEW[part] : POST[4]",
+        "versions": "COMMIT[2] : RETIRE[2] : RETIRE[3] : RENEW[part] : POST[4]",
     }
 
 
@@ -178,3 +179,62 @@ def test_a_root_that_senses_again_is_at_rest_while_it_does() -> None:
     assert bench.reactor.laws.violations == []
     assert bench.reactor.reactions == {}
     assert bench.times("adaptation_applied", id=2)[0] <= 35.0
+
+
+# ------------------------------------------------------------------- what an old version rests on fails (law 14)
+
+
+def slowly(adaptation: Adaptation) -> Adaptation:
+    return replace(adaptation, definitions=adaptation.definitions.replace("Do[old, 2]", "Do[old, 5]"))
+
+
+def test_an_old_version_whose_assumption_fails_after_it_was_retired_is_given_up() -> None:
+    """Its monitor stays as long as it does; its body in service finishes, and counts as failed."""
+    bench = Bench()
+    bench.at(0.0, slowly(FIRST))
+    bench.at(3.0, in_mode(SECOND, "versions"))
+    bench.scheduler.call_at(3.2, lambda: bench.flags.update(A=False))
+    bench.run(12.0)
+    assert bench.times("assumption_failure", assumption="A") == [4.0]
+    (old,) = (e for e in bench.trace.of("ended") if e.data["situation"] == "part" and e.time == 5.0)
+    assert (old.data["ok"], old.data["cause"]) == (False, "withdrawn")
+    assert [(e.time, e.data["guard"]) for e in bench.trace.of("entered") if e.data["situation"] == "part"][:2] == [
+        (0.0, 2), (5.0, 4),
+    ]  # fmt: skip
+    assert [(e.time, e.data["label"]) for e in bench.trace.of("removed")] == [(5.0, 2), (5.0, 3)]
+    assert bench.reactor.laws.interruptions == 0
+    assert bench.reactor.laws.violations == []
+
+
+def test_a_new_version_is_not_concerned_by_what_the_old_one_rested_on() -> None:
+    bench = Bench()
+    bench.at(0.0, slowly(FIRST))
+    bench.at(3.0, in_mode(SECOND, "versions"))
+    bench.scheduler.call_at(7.0, lambda: bench.reactor.assumption_sensed("A", False))
+    bench.run(12.0)
+    assert all(e.data["ok"] for e in bench.trace.of("ended"))
+    assert bench.times("inhibited") == []
+
+
+def test_whoever_may_still_assert_what_is_removed_is_given_up_with_it() -> None:
+    """There is no newer version of `part` that its old parent could go on with."""
+    bench = Bench()
+    bench.at(0.0, slowly(FIRST))
+    bench.at(3.0, in_mode(WITHOUT_PART, "versions"))
+    bench.scheduler.call_at(3.2, lambda: bench.reactor.assumption_sensed("A", False))
+    bench.run(30.0)
+    ended = [(e.time, e.data["situation"], e.data["ok"]) for e in bench.trace.of("ended")]
+    assert ended[:2] == [(5.0, "part", False), (5.0, "work", False)]
+    assert all(situation == "work" and ok for time, situation, ok in ended[2:])
+    assert {e.data["label"] for e in bench.trace.of("removed")} >= {1, 2}
+    assert bench.reactor.laws.violations == []
+
+
+def test_an_old_version_that_is_not_given_up_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(Assumptions, "_give_up", lambda self: None)
+    bench = Bench()
+    bench.at(0.0, slowly(FIRST))
+    bench.at(3.0, in_mode(SECOND, "versions"))
+    bench.scheduler.call_at(3.2, lambda: bench.reactor.assumption_sensed("A", False))
+    bench.run(12.0)
+    assert {violation.law for violation in bench.reactor.laws.violations} == {14}

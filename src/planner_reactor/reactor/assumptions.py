@@ -6,9 +6,12 @@ again. What is known survives a crash with the journal.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
-from planner_reactor.link.messages import PerceptionKind
+import msgspec
+
+from planner_reactor.link.messages import Adaptation, PerceptionKind
+from planner_reactor.reactor.committed import Committed
 from planner_reactor.reactor.journal import Assumed, Journal
 from planner_reactor.reactor.resting import Resting
 from planner_reactor.reactor.situations import Situations
@@ -20,6 +23,16 @@ CALM = "Calm("
 def calm(situation: str) -> str:
     """What is presumed of every situation: that it does not fail again and again (see `storms`)."""
     return f"{CALM}{situation})"
+
+
+class Older(msgspec.Struct, frozen=True):
+    """What one adaptation of mode `versions` put an end to: the last old version of each situation, what it rested on,
+    and which situations have no newer one.
+    """
+
+    versions: Mapping[str, int]
+    rests_on: Mapping[str, tuple[str, ...]]
+    removed: tuple[str, ...]
 
 
 class Assumptions:
@@ -38,6 +51,7 @@ class Assumptions:
         self._told = told
         self.failed: dict[str, float] = {}
         self._resting = Resting()
+        self._older: list[Older] = []  # of which something may be left
 
     def restored(self) -> None:
         """What the journal knows of: it fails until it is sensed to hold."""
@@ -81,11 +95,39 @@ class Assumptions:
         """It has new reactions, which have not failed yet."""
         self.sensed(calm(situation), True, tell=False)
 
+    def outlived(self, adaptation: Adaptation, before: Committed) -> None:
+        """In mode `versions` what is on goes on as it began: on what it rested on before this was committed."""
+        if adaptation.mode != "versions":
+            return
+        situations = (*(c.situation for c in adaptation.changes), *adaptation.removed)
+        self._older.append(
+            Older(
+                versions={s: self._situations.versions.newest(s) for s in situations},
+                rests_on={s: before.rests_on.get(s, ()) for s in situations},
+                removed=adaptation.removed,
+            )
+        )
+
     def disable(self) -> None:
-        """Every situation that rests on a failed assumption is disabled by it."""
+        """Every situation that rests on a failed assumption is disabled by it; what is left of old versions given up.
+        """
         for assumption in self.failed:
             for name in self.resting_on(assumption):
                 self._situations.disable(name, assumption)
+        if self._older:
+            self._give_up()
+
+    def _give_up(self) -> None:
+        """A removed situation has no newer version: whoever may still assert it is given up with it."""
+        left = self._situations.has_older
+        self._older = [old for old in self._older if any(left(s, n) for s, n in old.versions.items())]
+        for count, old in enumerate(self._older, 1):
+            failed = {s for s, assumptions in old.rests_on.items() if not self.failed.keys().isdisjoint(assumptions)}
+            for older in self._older[:count] if not failed.isdisjoint(old.removed) else ():
+                for situation, version in older.versions.items():
+                    self._situations.give_up(situation, version)
+            for situation in sorted(failed):
+                self._situations.give_up(situation, old.versions[situation])
 
     def enable(self) -> None:
         """No situation is disabled by an assumption that holds, or on which it does not rest any more."""

@@ -80,6 +80,7 @@ class Laws:
         self.ledgers: list[Callable[[], str]] = []  # further ledgers: "" or what does not balance
         self.interruptions = 0
         self._disabled_since: dict[str, float] = {}
+        self._retired: dict[int, tuple[str, int, tuple[str, ...]]] = {}  # label → what it serves still, and on what
         self.frozen = 0  # bodies that a FREEZE stopped, on demand
         self._applied: set[int] = set()  # ids above `_all_applied`, of the present epoch
         self._all_applied = 0
@@ -135,6 +136,17 @@ class Laws:
     def _holds(self, fields: dict[str, Any]) -> None:
         if fields["because"] == "assumption":
             self._disabled_since.setdefault(fields["situation"], self._reactor.scheduler.now)
+
+    def _retires(self, fields: dict[str, Any]) -> None:
+        """Law 14: what a retired reaction may still serve, and what it rests on."""
+        for transaction in self._reactor.transactions.under_way:
+            for reaction in transaction.killed:
+                if reaction.label == fields["label"] and (name := reaction.situation) is not None:
+                    newest = self._reactor.situations.versions.newest(name)
+                    self._retired[reaction.label] = name, newest, transaction.before.rests_on.get(name, ())
+
+    def _removes(self, fields: dict[str, Any]) -> None:
+        self._retired.pop(fields["label"], None)
 
     def _freezes(self, fields: dict[str, Any]) -> None:
         """Law 2: what stops a body in service is an explicit FREEZE, and it holds the situation meanwhile."""
@@ -271,6 +283,12 @@ class Laws:
                 del self._disabled_since[situation]
             elif self._reactor.scheduler.now > since + GRACE and self._reactor.situations.awaited(situation):
                 self.breach(14, f"{situation} is disabled, and its default reaction has not begun")
+        for name, newest, assumptions in self._retired.values():
+            if not self._reactor.failed.keys().isdisjoint(assumptions):
+                for instance in self._reactor.situations.named(name).instances.values():
+                    if instance.version <= newest and not instance.gone:
+                        self.breach(14, f"instance {instance.number} of {name} is of an old version that rests on a "
+                                        "failed assumption, and is not given up")  # fmt: skip
         for assumption in self._reactor.readings.disbelieved():
             self.breach(14, f"{assumption} was read to fail as often as it takes, and counts as holding")
 
@@ -288,4 +306,6 @@ _WATCHES: dict[str, Callable[[Laws, dict[str, Any]], None]] = {
     "frozen": Laws._freezes,
     "inhibited": Laws._holds,
     "left": Laws._leaves,
+    "removed": Laws._removes,
+    "retired": Laws._retires,
 }

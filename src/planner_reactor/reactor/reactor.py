@@ -200,6 +200,7 @@ class Reactor:
             return False
         for reaction in transaction.killed:
             self._lifetimes[reaction.label].last = transaction.before.versions.get(reaction.situation or "", 0)
+        self.assumptions.outlived(transaction.adaptation, transaction.before)
         self.assumptions.disable()
         return True
 
@@ -362,6 +363,7 @@ class Reactor:
     def _assumption_told(self, kind: PerceptionKind, assumption: str, cause: str = "") -> None:
         self.trace.record(kind, assumption=assumption, **({"cause": cause} if cause else {}))
         self.perceive(kind, assumption, cause=cause)
+        self.settle_laws()
 
     # -- how it stands
 

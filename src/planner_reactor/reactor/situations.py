@@ -10,6 +10,7 @@ Legend: s situation, k instance number, g reaction = (label of its guard or None
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Iterator
+from math import inf
 from typing import Any, TypeAlias
 
 from planner_reactor.reactor.instances import (
@@ -288,8 +289,17 @@ class Situations:
         for _, strand in granted:
             self._waker.ended(strand, True, (), "")
 
-    def _withdraw(self, situation: Situation) -> None:
-        withdrawn = [i for i in situation.instances.values() if i.status == "on"]
+    def has_older(self, name: str, version: int) -> bool:
+        """Is any instance of this version left, or of an older one?"""
+        oldest = next(iter(self.named(name).instances.values()), None)
+        return oldest is not None and oldest.version <= version
+
+    def give_up(self, name: str, version: int) -> None:
+        """What is of this version, or of an older one, is withdrawn, as by a RENEW while the situation is disabled."""
+        self._withdraw(self.named(name), version)
+
+    def _withdraw(self, situation: Situation, last: float = inf) -> None:
+        withdrawn = [i for i in situation.instances.values() if i.status == "on" and i.version <= last]
         for instance in withdrawn:  # grows while it is read: descendants follow their owners
             instance.withdrawn = True
             withdrawn += [c for c in instance.children.values() if c.status == "on" and not c.withdrawn]

@@ -97,7 +97,7 @@ def versions_script(surgery: Surgery, killed: Iterable[Reaction]) -> Process:
     """Old and new beside each other: `COMMIT[id] : RETIRE[old] : … : RENEW[s] : … : POST[new] : …`, in an instant."""
     steps = [
         *_commit(surgery),
-        *(Call("RETIRE" if r.situation is not None else "KILL", (Number(r.label),)) for r in killed),
+        *(Call("RETIRE", (Number(r.label),)) for r in killed),
         *(Call("RENEW", (Symbol(s),)) for s in surgery.named if s not in surgery.removed),
         *(Call("POST", (Number(n),)) for n in surgery.adds),
     ]
@@ -108,11 +108,13 @@ def removal_script(surgery: Surgery, killed: Iterable[Reaction]) -> Process:
     """What was retired goes, top-down, once nothing is left that it may serve: `WAITOLD[s] : KILL[old] : …`.
 
     A removed situation is renewed when whoever asserted it has gone: what comes back meanwhile is not waited for.
+    Monitors go last: as long as anything of the old is left, what it rests on is watched.
     """
     steps: list[Process] = []
     waited: set[str] = set()
-    for reaction in killed:
+    for reaction in sorted(killed, key=lambda reaction: reaction.situation is None):
         if (situation := reaction.situation) is None:
+            steps.append(Call("KILL", (Number(reaction.label),)))
             continue
         if situation not in waited:
             waited.add(situation)
