@@ -36,7 +36,7 @@ from planner_reactor.rs.reactions import (
     versions_script,
     wait_script,
 )
-from planner_reactor.rs.terms import Process
+from planner_reactor.rs.terms import Process, operands
 from planner_reactor.runtime import Executer, Root, Scheduler, Timer
 
 ROUNDING = 1e-6
@@ -78,6 +78,11 @@ class Transaction:
         """Every situation that it changes or removes, top-down."""
         changed = tuple(change.situation for change in self.adaptation.changes)
         return (*changed, *(s for s in self.adaptation.removed if s not in changed))
+
+
+def size(process: Process) -> int:
+    """How many processes it may at once be made of, as it comes to life: no more than it has parts."""
+    return 2 + sum(map(size, operands(process)))
 
 
 def script(adaptation: Adaptation, killed: tuple[Reaction, ...]) -> Process:
@@ -164,6 +169,10 @@ class Transactions:
         for transaction in self.under_way:
             if transaction.adaptation.id == number and transaction.state == "draining" and not transaction.reason:
                 if self._scheduler.now > transaction.deadline + ROUNDING:
+                    return None
+                if (needed := sum(size(r.schema.body) for r in transaction.reactions)) > self._executer.room:
+                    transaction.reason = "budget"
+                    transaction.problem = f"it may need {needed} processes, there is room for {self._executer.room}"
                     return None
                 try:
                     epoch = transaction.adaptation.epoch

@@ -200,7 +200,6 @@ class Reactor:
             return False
         for reaction in transaction.killed:
             self._lifetimes[reaction.label].last = transaction.before.versions.get(reaction.situation or "", 0)
-        self.assumptions.outlived(transaction.adaptation, transaction.before)
         self.assumptions.disable()
         return True
 
@@ -363,7 +362,6 @@ class Reactor:
     def _assumption_told(self, kind: PerceptionKind, assumption: str, cause: str = "") -> None:
         self.trace.record(kind, assumption=assumption, **({"cause": cause} if cause else {}))
         self.perceive(kind, assumption, cause=cause)
-        self.settle_laws()
 
     # -- how it stands
 
@@ -386,7 +384,7 @@ class Reactor:
         return 0 if self.executer.killing else self.executer.statistics().basic_running
 
     def over_budget(self) -> str | None:
-        live, most = self.executer.processes_live, self.budgets.processes
+        live, most = self.executer.processes_live, self.budgets.processes + len(self.executer.roots)
         return f"{live} processes live, at most {most}" if live > most else None
 
     @property

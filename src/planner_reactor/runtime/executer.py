@@ -157,6 +157,11 @@ class Executer:
         )
 
     @property
+    def room(self) -> int:
+        """How many more processes its budget allows."""
+        return self._kernel.budgets.processes - self._kernel.live
+
+    @property
     def processes_live(self) -> int:
         """Strands alive: one figure of the statistics, for those who ask after every step."""
         return self._kernel.live
