@@ -109,7 +109,7 @@ def test_without_a_resource_nothing_takes_turns() -> None:
 
 
 def test_goals_that_have_nothing_in_common_are_planned_apart() -> None:
-    """Together they were more than the search could do: each choice for one was tried with every choice for the others."""
+    """Together they were too much for the search: each choice for one was tried with every choice for the others."""
     domain = read_domain(TENDING.read_text())
     planner = planner_without(domain, ["SHARP"], verify=False)
     settle(planner, Book(domain))

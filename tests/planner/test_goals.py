@@ -16,7 +16,7 @@ from planner_reactor.logic.reader import read_domain
 from planner_reactor.planner import Planner
 from planner_reactor.planner.because import Because
 from planner_reactor.runtime import Host, Scheduler
-from tests.planner.driving import KITTING, Book, applied, image, kitting, perception, settle, texts
+from tests.planner.driving import KITTING, TENDING, Book, applied, image, kitting, perception, settle, texts
 from tests.planner.test_altered_domains import with_kinds
 
 TEXT = """
@@ -276,3 +276,55 @@ def test_a_running_reactor_takes_a_new_goal_and_loses_an_old_one_without_a_stop(
     assert max(gaps) <= 6  # the stairs are swept for one goal after the other; nothing else waits
     assert planner.goals == ("Back",)
     assert "hall" not in loop.reactor.text()
+
+
+# ------------------------------------------------------------------------------------------------------ advice
+
+
+def tending(**options: Any) -> tuple[Planner, Book]:
+    planner = Planner(kitting(TENDING), relax="none", verify=False, **options)
+    book = Book(planner.domain)
+    settle(planner, book)
+    return planner, book
+
+
+def test_a_machine_that_is_down_is_planned_without_until_it_is_back() -> None:
+    planner, book = tending()
+    before = texts(planner)
+    planner.tell("Machine(mill)", holds=False)
+    issued = settle(planner, book)
+    assert {name for adaptation in issued for name in adaptation.removed} == {"LoadMill", "UnloadMill"}
+    assert texts(planner)["LoadLathe"] == before["LoadLathe"]
+    planner.tell("Machine(mill)", holds=True)
+    settle(planner, book)
+    assert texts(planner) == before
+    with pytest.raises(InputError, match=r"Machine\(mil\) is no fact, did you mean Machine\(mill\)"):
+        planner.tell("Machine(mil)", holds=False)
+
+
+def test_an_assumption_that_somebody_doubts_is_done_without_until_somebody_trusts_it() -> None:
+    """Before any sensor says so; and no sensor takes it back."""
+    planner, book = tending()
+    before = image(planner)
+    planner.doubt("INTIME")
+    settle(planner, book)
+    assert "AwaitLamp[mill]" in texts(planner)["Tending"]
+    planner.perceive(perception("assumption_holds", "INTIME"))
+    settle(planner, book)
+    assert "INTIME" in planner.relaxed
+    planner.trust("INTIME")
+    settle(planner, book)
+    assert image(planner) == before
+    with pytest.raises(InputError, match="INTIMES is not an assumption"):
+        planner.doubt("INTIMES")
+
+
+def test_a_second_goal_that_wants_the_same_arm_is_told() -> None:
+    planner, book = tending()
+    assert not planner.warnings
+    planner.pursue("Cleaning")
+    settle(planner, book)
+    assert planner.warnings == (
+        "what goes on side by side in Tending and Cleaning may take 2 of arm, and there is 1: the host must serve one "
+        "after the other, or the actions say that they use it",
+    )

@@ -158,6 +158,35 @@ def test_the_camera_looks_for_the_next_thing_while_the_arm_places_this_one() -> 
     assert planner.forecast.of("Kit") == Duration(12e3, 12e3)
 
 
+MACHINES = """
+atp_resource arm;
+atp_goal Parts Made(small) and Made(big);
+atp_fact Blank(small) and Blank(big);
+atp_actionschema Load <p><>
+    duration: 10000; uses: arm;
+    effects: Loaded(p);
+endactionschema
+atp_actionschema CutSmall <><>
+    duration: 100000;
+    executability: Loaded(small);
+    effects: Made(small);
+endactionschema
+atp_actionschema CutBig <><>
+    duration: 200000;
+    executability: Loaded(big);
+    effects: Made(big);
+endactionschema
+"""
+
+
+def test_the_machine_that_takes_longest_is_loaded_first() -> None:
+    """In the order of the text it took ten seconds more."""
+    planner = Planner(read_domain(MACHINES), relax="none")
+    settle(planner)
+    assert "(~(Load[big] : (Load[small] : CutSmall & CutBig) : SUCCEED" in texts(planner)["Parts"]
+    assert planner.forecast.of("Parts") == Duration(210e3, 210e3)
+
+
 TWO = """
 atp_resource arm;
 atp_goal Both Done(a) and Done(b);

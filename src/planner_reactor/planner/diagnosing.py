@@ -29,10 +29,19 @@ class Diagnosing(msgspec.Struct, eq=False):
     """Counts failures by situation, since the reactor was last changed for an assumption."""
 
     failures: Counter[str] = msgspec.field(default_factory=Counter)
+    unexplained: Counter[str] = msgspec.field(default_factory=Counter)  # since they were borne last
     blind: set[str] = msgspec.field(default_factory=set)  # assumptions of which sensors say nothing of worth
 
     def failed(self, situation: str, count: int = 1) -> None:
         self.failures[situation] += count
+
+    def runs_out(self, situation: str, patience: int | None) -> bool:
+        """It failed once more, for no known reason: as often as is borne? Then it is counted anew."""
+        self.unexplained[situation] += 1
+        if not patience or self.unexplained[situation] < patience:
+            return False
+        self.unexplained[situation] = 0
+        return True
 
     def begin_anew(self) -> None:
         """The reactor is to rest on other assumptions: what failed before tells nothing of what it will be."""

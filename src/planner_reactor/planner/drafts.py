@@ -27,6 +27,8 @@ class Draft(msgspec.Struct, eq=False):
     settled: set[Situation] = msgspec.field(default_factory=set)
     left: set[Situation] = msgspec.field(default_factory=set)
     contexts: dict[Situation, tuple[Context, Beliefs]] = msgspec.field(default_factory=dict)  # what each rests on
+    spent: int = 0  # units of work
+    more: Situation | None = None  # what is refined beyond what must be (`sizing`)
     thought: tuple[Key, Work[Refinement]] | None = None  # what is being worked out
 
     def __post_init__(self) -> None:
@@ -47,6 +49,14 @@ class Draft(msgspec.Struct, eq=False):
     def to_avoid(self, situation: Situation) -> frozenset[str]:
         """The abstract actions that are not to be used for it."""
         return self.avoided.get(situation, frozenset())
+
+    def add_more(self, refinement: Refinement) -> None:
+        """What need not be in it is in it if it has a plan, and nothing that is asked for could make it another."""
+        self.waiting, self.more = [], None
+        if refinement.composition is None or refinement.asked:
+            self.left.add(refinement.situation)
+        else:
+            self.drafted.add(refinement)
 
     def fail(self, situation: Situation) -> bool:
         """There is no plan for one of its situations: begin again without it, or content with less.

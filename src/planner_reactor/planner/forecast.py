@@ -16,9 +16,9 @@ import msgspec
 from planner_reactor.errors import InputError, nearest
 from planner_reactor.logic.domain import ActionSchema, Domain, Duration
 from planner_reactor.logic.formulas import Atom, Numeral, filled
-from planner_reactor.planner.model import Model
+from planner_reactor.planner.model import Model, Segment
 from planner_reactor.planner.situations import Situation, situation_of
-from planner_reactor.planner.structure import Action, Choice, During, InOrder, Run, Together, Tree
+from planner_reactor.planner.structure import Action, Choice, During, InOrder, Meanwhile, Run, Together, Tree
 
 UNKNOWN = Duration(0.0, inf)
 NO_TIME = Duration(0.0, 0.0)
@@ -43,25 +43,36 @@ class Forecast(msgspec.Struct, eq=False):
     def lasts(self, situation: Situation) -> Duration:
         """How long a situation lasts (milliseconds); a stub is unknown, unless the domain says it of the action."""
         if situation not in self._lasts:
-            segment = self.model.segments.get(situation)
-            tree = segment.refinement.tree if segment is not None and segment.refinement is not None else None
+            tree = _tree_of(self.model.segments.get(situation))
             schema = self.domain.schemas.get(situation.schema)
             self._lasts[situation] = self._span(tree) if tree is not None else _declared(schema)
         return self._lasts[situation]
 
+    def warnings(self) -> Iterator[str]:
+        """What looks wrong about the situations as they are planned."""
+        for segment in self.model:
+            yield from segment.refinement.warnings if segment.refinement is not None else ()
+        yield from self.contentions()
+
     def contentions(self) -> Iterator[str]:
         """Where situations may take more of a resource than there is, at the same time."""
-        for segment in self.model:
-            tree = segment.refinement.tree if segment.refinement is not None else None
+        trees = {segment.name: tree for segment in self.model if (tree := _tree_of(segment)) is not None}
+        roots = [self.model.names[root] for root in self.model.roots if self.model.names[root] in trees]
+        if len(roots) > 1:
+            yield from self._short(" and ".join(roots), tuple(trees[name] for name in roots))
+        for name, tree in trees.items():
             for parts in _side_by_side(tree):
-                for resource, amount in self._sum(parts).items():
-                    capacity = self.domain.resources[resource.predicate].capacity
-                    if amount > capacity:
-                        name = str(resource) if resource.arguments else resource.predicate
-                        yield (
-                            f"what goes on side by side in {segment.name} may take {amount} of {name}, and there is "
-                            f"{capacity}: the host must serve one after the other, or the actions say that they use it"
-                        )
+                yield from self._short(name, parts)
+
+    def _short(self, where: str, parts: tuple[Tree, ...]) -> Iterator[str]:
+        for resource, amount in self._sum(parts).items():
+            capacity = self.domain.resources[resource.predicate].capacity
+            if amount > capacity:
+                name = str(resource) if resource.arguments else resource.predicate
+                yield (
+                    f"what goes on side by side in {where} may take {amount} of {name}, and there is {capacity}: "
+                    f"the host must serve one after the other, or the actions say that they use it"
+                )
 
     def _span(self, tree: Tree) -> Duration:
         match tree:
@@ -73,7 +84,7 @@ class Forecast(msgspec.Struct, eq=False):
             case Together(parts):
                 spans = [self._span(part) for part in parts]
                 return Duration(max(s.least for s in spans), max(s.most for s in spans))
-            case During(_, inner):
+            case During(_, inner) | Meanwhile(_, inner):
                 return self._span(inner)
             case Choice(test, then, otherwise):
                 first, one, other = self._action(test), self._span(then), self._span(otherwise)
@@ -95,6 +106,8 @@ class Forecast(msgspec.Struct, eq=False):
                 return self._sum(parts)
             case During(action, inner):
                 return self._taken(action) + self._take(inner)
+            case Meanwhile(actions, inner):
+                return self._sum((*map(Run, actions), inner))
             case Choice(test, then, otherwise):
                 return _most((self._taken(test), self._take(then), self._take(otherwise)))
 
@@ -116,10 +129,13 @@ class Forecast(msgspec.Struct, eq=False):
             return own
         situation = situation_of(action, fold=self.fold)
         if situation not in self._takes:
-            segment = self.model.segments.get(situation)
-            tree = segment.refinement.tree if segment is not None and segment.refinement is not None else None
+            tree = _tree_of(self.model.segments.get(situation))
             self._takes[situation] = Counter() if tree is None else self._take(tree)
         return own | self._takes[situation]
+
+
+def _tree_of(segment: Segment | None) -> Tree | None:
+    return segment.refinement.tree if segment is not None and segment.refinement is not None else None
 
 
 def _declared(schema: ActionSchema | None) -> Duration:
@@ -147,6 +163,9 @@ def _side_by_side(tree: Tree | None) -> Iterator[tuple[Tree, ...]]:
                 waiting.extend(parts)
             case During(action, inner):
                 yield (Run(action), inner)
+                waiting.append(inner)
+            case Meanwhile(actions, inner):
+                yield (*map(Run, actions), inner)
                 waiting.append(inner)
             case Choice(_, then, otherwise):
                 waiting.extend((then, otherwise))

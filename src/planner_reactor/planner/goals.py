@@ -4,12 +4,16 @@ what is wanted.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator
+from typing import Final
 
 from planner_reactor.errors import InputError, nearest
 from planner_reactor.logic.domain import ActionSchema, Condition, Domain
 from planner_reactor.logic.formulas import Atom, Term, filled
 from planner_reactor.planner.theory import Theory
+
+_FACT: Final = re.compile(r"\s*([A-Za-z]\w*)\s*\(([\w\s,]*)\)\s*")
 
 
 def chosen_goal(domain: Domain, goal: str | None) -> str:
@@ -35,6 +39,26 @@ def must_follow(domain: Domain, before: Domain, goals: tuple[str, ...]) -> None:
             schema.inputs, schema.outputs, len(schema.executability),
         ):  # fmt: skip
             raise InputError(f"{domain.file}: action {name} takes, gives or needs something else than before")
+
+
+def with_fact(domain: Domain, fact: str, *, holds: bool) -> Domain:
+    """The domain with a fact such as `Machine(mill)`, or without it; InputError if it is none, or is so already."""
+    match = _FACT.fullmatch(fact)
+    if match is None:
+        raise InputError(f"fact is {fact!r}, expected a predicate and constants, such as Machine(mill)")
+    arguments = tuple(part.strip() for part in match[2].split(",")) if match[2].strip() else ()
+    atom = Atom(match[1], arguments)
+    facts = [known for known_ones in domain.facts.values() for known in known_ones]
+    alike = [len(known.arguments) for known in facts if known.predicate == atom.predicate]
+    if holds == (atom in facts) or (alike and len(arguments) not in alike):
+        hint = nearest(fact, map(str, facts)) or f"the facts are {', '.join(map(str, facts))}"
+        raise InputError(f"{fact} is {'a fact already' if atom in facts else 'no fact'}, {hint}")
+    facts = [*facts, atom] if holds else [known for known in facts if known != atom]
+    return Domain(
+        assumptions=domain.assumptions.values(), goals=domain.goals.values(), rules=domain.rules,
+        exclusions=domain.exclusions, persistences=[p for several in domain.persistences.values() for p in several],
+        facts=facts, schemas=domain.schemas.values(), resources=domain.resources.values(), file=domain.file,
+    )  # fmt: skip
 
 
 def root_schema(theory: Theory, goal_name: str) -> ActionSchema:

@@ -15,8 +15,6 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Mapping
 
-from msgspec.structs import replace
-
 from planner_reactor.analysis.verdicts import Environment
 from planner_reactor.errors import InputError, nearest
 from planner_reactor.link.messages import Mode, Perception, Standing
@@ -29,17 +27,18 @@ from planner_reactor.planner.diagnosing import Diagnosing, suspects
 from planner_reactor.planner.explaining import Explanation, explain, unrecorded
 from planner_reactor.planner.forecast import Forecast
 from planner_reactor.planner.foresight import Foresight
-from planner_reactor.planner.goals import chosen_goal, must_follow
+from planner_reactor.planner.goals import chosen_goal, must_follow, with_fact
 from planner_reactor.planner.issuing import Issuer
 from planner_reactor.planner.model import Model
 from planner_reactor.planner.reducing import Reducer
 from planner_reactor.planner.relaxing import Assuming
 from planner_reactor.planner.resuming import Resumption, begun_anew
 from planner_reactor.planner.sensing import answer, to_ask
+from planner_reactor.planner.sizing import Sizing
 from planner_reactor.planner.standings import ANSWERS, Standings
 from planner_reactor.planner.steps import Cause, Relax, Relaxation, Step
 from planner_reactor.planner.theory import Theory
-from planner_reactor.planner.verifying import Gate, Verdicts, reason
+from planner_reactor.planner.verifying import Gate, Verdicts, without_unsound
 
 __all__ = ["Planner", "Relaxation", "Step"]
 
@@ -51,7 +50,8 @@ class Planner:
     ones are not relaxed either. `period_ms` replaces the domain's periods of monitors. With `fold` constant
     arguments become part of a situation's name, else a situation has parameters and several instances at
     once. With `foresight` it thinks ahead when there is nothing else to do, so that a failure finds it prepared.
-    With `verify` no adaptation is issued before it is verified (`verifying`).
+    With `verify` no adaptation is issued before it is verified (`verifying`). `response_ms` is the time that may go
+    into one adaptation: the longer, the fewer and larger they are (`sizing`).
     """
 
     def __init__(
@@ -68,19 +68,20 @@ class Planner:
         patience: int | None = None,
         foresight: bool = False,
         verify: bool = True,
+        response_ms: float | None = None,
     ) -> None:
         self.domain = domain
         self.goal = chosen_goal(domain, goal)
         self.model = Model()
         self.patience = patience
         self._counts: Counter[str] = Counter()
-        self._failures: Counter[str] = Counter()
         self._diagnosing = Diagnosing()
         self._assuming = Assuming(domain, relax)
         self._issuer = Issuer(self.model, fold, stub_ms, period_ms, mode, epoch)
         self._gate = Gate(mode=mode) if verify else None
         self._withheld: dict[int, str] = {}
         self._reducer = Reducer(Theory(domain), self.model, self._issuer, self._assuming, self._counts)
+        self._reducer.sizing = Sizing.within(response_ms)
         for name in dict.fromkeys((self.goal, *(g.name for g in domain.goals.values() if g.kept))):
             self._reducer.pursue(name)
         self._foresight = Foresight(self._reducer) if foresight else None
@@ -146,8 +147,7 @@ class Planner:
     @property
     def warnings(self) -> tuple[str, ...]:
         """What looks wrong about the segments as they are planned."""
-        found = [w for segment in self.model if segment.refinement for w in segment.refinement.warnings]
-        return tuple(dict.fromkeys([*found, *self.forecast.contentions()]))
+        return tuple(dict.fromkeys(self.forecast.warnings()))
 
     @property
     def forecast(self) -> Forecast:
@@ -171,8 +171,7 @@ class Planner:
     @property
     def goals(self) -> tuple[str, ...]:
         """The goals that are pursued, in the order in which they were given."""
-        leaving = self._reducer.leaving
-        return tuple(root.schema for root in self.model.roots if root not in leaving)
+        return tuple(root.schema for root in self.model.roots if root not in self._reducer.leaving)
 
     def pursue(self, goal: str) -> None:
         """Pursue this goal of the domain, too, from now on; what the others need goes on meanwhile."""
@@ -196,6 +195,19 @@ class Planner:
         if self._foresight is not None:
             self._foresight = Foresight(self._reducer)
         self._reducer.adopt(Theory(domain), Because("domain", domain.file))
+
+    def tell(self, fact: str, *, holds: bool) -> None:
+        """A fact such as `Machine(mill)` holds from now on, or no more: a resource is down."""
+        self.adopt(with_fact(self.domain, fact, holds=holds))
+
+    def doubt(self, assumption: str) -> None:
+        """Do without this assumption from now on, though nothing speaks against it yet; until it is trusted again."""
+        if self._assuming.may_doubt(assumption):
+            self._relax(assumption, "normal", FAILED_ASSUMPTION)
+
+    def trust(self, assumption: str) -> None:
+        """Hold this assumption again, as soon as nothing else is under way."""
+        self._assuming.trust(assumption)
 
     def meet(self, environment: Environment) -> None:
         """What is known of the basic processes from now on: bounds of adaptations are numbers."""
@@ -226,22 +238,16 @@ class Planner:
         return self._verified(self._gate.look(step), self._gate)
 
     def _verified(self, looked: tuple[Step, Verdicts] | None, gate: Gate) -> Step:
-        """The step that was looked at without what does not hold: that counts as refused. While it is not decided, the
-        looking is all that is done.
-        """
+        """The step that was looked at without what does not hold, which counts as refused; if it is decided."""
         if looked is None:
-            assert gate.held is not None
-            return Step("verify", gate.held.situation, purpose=f"verify: {gate.held.purpose}")
-        (step, verdicts), sent, why = looked, [], ""
-        for adaptation, verdict in verdicts:
-            if verdict.holds:
-                sent.append(adaptation)
-                continue
-            self._withheld[adaptation.id] = why = reason(adaptation, verdict)
+            return gate.waiting()
+        step, withheld = without_unsound(*looked)
+        for number, why in withheld.items():
+            self._withheld[number] = why
             self._counts["withheld"] += 1
             self._counts["issued"] -= 1
-            self._reducer.not_applied(adaptation.id, why=f"withheld, {why}")
-        return replace(step, adaptations=tuple(sent), withheld=why) if why else step
+            self._reducer.not_applied(number, why=f"withheld, {why}")
+        return step
 
     @property
     def fenced(self) -> bool:
@@ -293,9 +299,8 @@ class Planner:
 
     def _reinstate(self) -> Step | None:
         """Take back an assumption that holds again, once nothing else is under way."""
-        if self._issuer.under_way or not self._reducer.is_done:
-            return None
-        name = self._assuming.take_back()
+        busy = self._issuer.under_way or not self._reducer.is_done
+        name = None if busy else self._assuming.take_back()
         if name is None:
             return None
         self._counts["reinstated"] += 1
@@ -307,9 +312,8 @@ class Planner:
 
     def _relax_next(self) -> Step | None:
         """The reactor is ω-ideal: relax the assumption in use that is least likely to hold."""
-        if not (self._reducer.is_done and self._reducer.has_begun):
-            return None
-        name = self._assuming.least_likely(self.model.used())
+        done = self._reducer.is_done and self._reducer.has_begun
+        name = self._assuming.least_likely(self.model.used()) if done else None
         if name is None:
             return None
         self._relax(name, "normal", QUIESCENT)
@@ -336,6 +340,8 @@ class Planner:
         self._standing.perceive(perception, self._issuer)
         if self._gate is not None:
             self._gate.perceive(perception)
+        if perception.kind.startswith("assumption_"):
+            self._diagnosing.sensed(perception.subject, unknown=perception.kind == "assumption_unknown")
         match perception.kind:
             case "adaptation_applied":
                 self._reducer.applied(int(perception.subject))
@@ -353,16 +359,12 @@ class Planner:
             case "storm":
                 self._doubt(perception.subject, perception.number)
             case "assumption_failure":
-                self._diagnosing.sensed(perception.subject, unknown=False)
                 self._assumption_failed(perception.subject, perception.number)
             case "assumption_holds":
-                self._diagnosing.sensed(perception.subject, unknown=False)
                 self._assuming.holds_again(perception.subject)
-            case "assumption_unknown":
-                self._diagnosing.sensed(perception.subject, unknown=True)
             case "information":
                 self._told(perception)
-            case "guard_kill" | "error" | "restarted" | "halted":
+            case "assumption_unknown" | "guard_kill" | "error" | "restarted" | "halted":
                 pass  # completion is told by adaptation_applied; errors are counted
 
     def _situation_failed(self, name: str, number: int) -> None:
@@ -370,9 +372,7 @@ class Planner:
         more patience.
         """
         segment = self._reducer.raise_urgency(name, FAILED_SITUATION, Because("situation_failure", name, number))
-        self._failures[name] += 1
-        if self.patience and segment and self._failures[name] >= self.patience:
-            self._failures[name] = 0
+        if segment and self._diagnosing.runs_out(name, self.patience):
             self._doubt(name, number)
 
     def _doubt(self, name: str, number: int) -> None:

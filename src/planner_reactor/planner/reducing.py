@@ -28,6 +28,7 @@ from planner_reactor.planner.model import Model, Segment
 from planner_reactor.planner.refinement import refining
 from planner_reactor.planner.relaxing import Assuming
 from planner_reactor.planner.situations import Context, Refinement, Situation
+from planner_reactor.planner.sizing import Sizing, at_once
 from planner_reactor.planner.steps import Step, StepKind
 from planner_reactor.planner.theory import Theory
 from planner_reactor.planner.thinking import advance
@@ -53,7 +54,7 @@ class Reducer:
     ) -> None:
         self.theory, self.model, self.issuer = theory, model, issuer
         self.assuming, self.counts = assuming, counts
-        self.convergence = convergence or Convergence()
+        self.convergence, self.sizing = convergence or Convergence(), Sizing()
         self.records: dict[int, Record] = {}  # of the last adaptations, to be explained
         self.memory = Memory(theory)
         self.starts: dict[Situation, Segment] = {}
@@ -186,11 +187,17 @@ class Reducer:
         while left > 0:
             situation = draft.waiting[0] if draft.waiting else draft.segment.situation
             if situation in draft.refinements:
+                draft.more = self.sizing.more(draft, self.model, self.theory.domain)
+                if draft.more is not None:
+                    draft.waiting = [draft.more]
+                    continue
                 if left < UNITS and draft.size > UNITS:
                     break  # so much is issued that it is a step of its own
                 self._count(UNITS - left)
                 return self._finish(draft)
+            before = left
             refinement, left = self._refine(situation, draft, left)
+            draft.spent += before - left
             if refinement is not None and not self._take(draft, refinement):
                 break
         self._count(UNITS - left)
@@ -203,23 +210,15 @@ class Reducer:
     def _take(self, draft: Draft, refinement: Refinement) -> bool:
         """Put a refinement into the draft; False if that was the end of the draft."""
         situation = refinement.situation
-        if refinement.composition is not None:
+        if situation == draft.more:
+            draft.add_more(refinement)
+        elif refinement.composition is not None:
             draft.drafted.add(refinement)
-            draft.waiting = [*self._to_refine(draft, refinement), *draft.waiting[1:]]
+            draft.waiting = [*at_once(draft, refinement, self.model), *draft.waiting[1:]]
         elif not draft.fail(situation):
             self._give_up(draft.segment, refinement)
             return False
         return True
-
-    def _to_refine(self, draft: Draft, refinement: Refinement) -> list[Situation]:
-        """Which new sub-situations must be concrete at once."""
-        new = list(dict.fromkeys(c.situation for c in refinement.children if c.situation not in self.model.segments))
-        if draft.segment.is_stub:
-            first = refinement.begins_with
-            begun = [c.situation for c in refinement.children if first and c.arguments == first.arguments]
-            new = [s for s in new if first and first.abstract and s.schema == first.name and s in begun]
-        done = {*draft.refinements, *draft.waiting, *draft.left}
-        return [s for s in new if s not in done]
 
     def _finish(self, draft: Draft) -> Step:
         """Issue the adaptation that a draft amounts to, unless something that it touches is held."""

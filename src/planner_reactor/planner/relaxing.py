@@ -64,6 +64,18 @@ class Assuming:
         known = name.partition("(")[0] in self.domain.assumptions
         return known and self.relax != "none" and not in_doubt(name, self.beliefs.relaxed)
 
+    def may_doubt(self, name: str) -> bool:
+        """Can it be given up, because somebody says so? InputError if there is no such assumption."""
+        _checked(self.domain, (name,))
+        self._returning.pop(name, None)
+        return not in_doubt(name, self.beliefs.relaxed)
+
+    def trust(self, name: str) -> None:
+        """Somebody says that it holds; InputError if there is no such assumption."""
+        _checked(self.domain, (name,))
+        if name in self._causes:
+            self._returning[name] = None
+
     def give_up(self, name: str, cause: Cause) -> None:
         """Plan without it from now on."""
         self._causes[name] = cause

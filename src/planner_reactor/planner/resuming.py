@@ -177,6 +177,7 @@ def begun_anew(before: Reducer) -> Reducer:
     """A reducer for the same goals that has issued nothing; what was worked out is remembered."""
     issuer = before.issuer.anew()
     reducer = Reducer(before.theory, issuer.model, issuer, before.assuming, before.counts, before.convergence)
+    reducer.sizing = before.sizing
     reducer.memory = before.memory
     for root in before.model.roots:
         if root not in before.leaving:

@@ -25,6 +25,8 @@ from planner_reactor.planner.structure import lasting
 from planner_reactor.planner.thinking import Work
 
 TRIES = 60
+PAUSE = 8
+"""So many steps are scheduled in one unit of work."""
 MOST_COMPETING = 8
 """If more steps compete for resources, no other order is tried."""
 
@@ -145,7 +147,8 @@ class _Scheduling:
         wished = iter(self.wishes)
         turn = next(wished, None)
         while ready:
-            yield
+            if len(self.ends) % PAUSE == 0:
+                yield
             able = [n for n in ready if n not in sharing.needs or turn in (None, n)]
             if not able:
                 return None

@@ -103,9 +103,10 @@ class Gate:
             self._known |= named
             self._under_way[adaptation.id] = adaptation, ()
             return NOTHING_WAS
-        self._read()
+        yield from self._reading()
         try:
             new = self._reactions(adaptation)
+            yield
         except RSError as problem:
             return self._withhold(adaptation, Verdict(safe=False, why=str(problem)))
         seen = None
@@ -146,6 +147,11 @@ class Gate:
         """The step that is held until its verdicts are known."""
         return None if self._held is None else self._held[0]
 
+    def waiting(self) -> Step:
+        """What the planner does meanwhile: it looks."""
+        assert self.held is not None
+        return Step("verify", self.held.situation, purpose=f"verify: {self.held.purpose}")
+
     def look_on(self) -> tuple[Step, Verdicts] | None:
         """Go on with what is held, for at most so many states."""
         assert self._held is not None
@@ -184,16 +190,28 @@ class Gate:
         return verdict
 
     def _read(self) -> None:
-        for adaptation in self._unread:
-            for reaction in self._reactions(adaptation):
+        finish(self._reading())
+
+    def _reading(self) -> Looking[None]:
+        """Read what was not looked at, with a pause after every adaptation."""
+        while self._unread:
+            for reaction in self._reactions(self._unread[0]):
                 self._standing.add(reaction)
-        self._unread.clear()
+            del self._unread[0]
+            yield
 
     def _reactions(self, adaptation: Adaptation) -> list[Known]:
         """The reactions that it adds, in the order of its adds."""
         read = self._forms.read(adaptation.definitions, file=f"<adaptation {adaptation.id}>")
         found = {reaction.label: reaction for reaction in read}
         return [found[label] for label in adaptation.adds if label in found]
+
+
+def without_unsound(step: Step, verdicts: Verdicts) -> tuple[Step, dict[int, str]]:
+    """The step without the adaptations that do not hold; and of these, by their numbers, why."""
+    why = {adaptation.id: reason(adaptation, verdict) for adaptation, verdict in verdicts if not verdict.holds}
+    sound = tuple(adaptation for adaptation, verdict in verdicts if verdict.holds)
+    return (replace(step, adaptations=sound, withheld=list(why.values())[-1]) if why else step), why
 
 
 def reason(adaptation: Adaptation, verdict: Verdict) -> str:
