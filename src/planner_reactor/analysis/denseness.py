@@ -39,13 +39,12 @@ from planner_reactor.analysis.rounds import Irreducible, Rounds, rounds_of
 from planner_reactor.analysis.subnets import network, traffic
 from planner_reactor.errors import InputError, nearest
 from planner_reactor.rs.configurations import World
-from planner_reactor.rs.facts import names
 from planner_reactor.rs.given import process_with_values, with_values
 from planner_reactor.rs.linking import Linked
 from planner_reactor.rs.open_names import open_names
 from planner_reactor.rs.parser import parse_process
 from planner_reactor.rs.printer import show
-from planner_reactor.rs.terms import Call, Process, Program, Symbol, Value, calls
+from planner_reactor.rs.terms import Call, Process, Program, Schema, Value
 from planner_reactor.rs.unknowns import Unknown, split
 from planner_reactor.rs.vocabulary import BUILT_IN, Signature
 
@@ -119,10 +118,15 @@ def dense(
     port that nobody uses.
     """
     world = program if isinstance(program, World) else opened(program, given=given)
-    called = parse_process(process) if isinstance(process, str) else process
-    if not isinstance(program, World):
-        called = process_with_values(called, _own_names(called, given or {}))
-    return Netlist(called, world).dense(port, supplied or {})
+    return Netlist(asked(process, world, given or {}), world).dense(port, supplied or {})
+
+
+def asked(process: Process | str, world: World, given: Mapping[str, float]) -> Process:
+    """The process of a question: names in it that stand for numbers are unknowns, or what they are given to be."""
+    found = parse_process(process) if isinstance(process, str) else process
+    together = world.program.with_schemas([Schema("<asked>", (), (), found)])
+    own = open_names(Linked(together, world.signatures, world.functions))
+    return process_with_values(found, {**{name: Unknown(name, -1) for name in own}, **given})
 
 
 def opened(
@@ -132,11 +136,6 @@ def opened(
     known = {**BUILT_IN, **(signatures or {})}
     values: dict[str, Value] = {n: Unknown(n) for n in open_names(Linked(program, known, ()))}
     return World(with_values(program, {**values, **(given or {})}), known)
-
-
-def _own_names(process: Process, given: Mapping[str, float]) -> dict[str, Value]:
-    own = {s.name for c in calls(process) for s in names(c.arguments) if isinstance(s, Symbol)}
-    return {**{n: Unknown(n, -1) for n in own}, **given}
 
 
 class Netlist:

@@ -141,7 +141,7 @@ def parameters(component: Process, world: World) -> Iterator[tuple[Unknown, Any]
         schema = world.program.select(component.name, values)
         for head, value in zip(schema.head if schema else (), values, strict=False):
             if isinstance(head, Parameter) and not isinstance(value, str):
-                yield Unknown(head.name), value
+                yield Unknown(head.name, -1), value
 
 
 def feeding(port: Value, nets: Netlist) -> tuple[Value, ...]:

@@ -341,7 +341,7 @@ class _Reader:
     def _entry(self, schema: Schema, call: Call, scope: Scope) -> dict[str, Value]:
         """The parameters at the beginning of any round: names stay what they are, numbers are unknown."""
         given = _parameters(schema, self._values(call, scope))
-        return {name: value if isinstance(value, str) else Unknown(name) for name, value in given.items()}
+        return {name: value if isinstance(value, str) else Unknown(name, -1) for name, value in given.items()}
 
     def _fresh(self, name: str) -> Unknown:
         return Unknown(name, next(self._serials))

@@ -23,7 +23,7 @@ from msgspec.structs import replace
 
 from planner_reactor.analysis.conditions import events_of
 from planner_reactor.analysis.conditions import text as condition_text
-from planner_reactor.analysis.denseness import Denseness, Failure, Netlist, opened
+from planner_reactor.analysis.denseness import Denseness, Failure, Netlist, asked, opened
 from planner_reactor.analysis.interface import Connector, carried, interface, sensors
 from planner_reactor.analysis.limits import Limit, limit_set
 from planner_reactor.analysis.subnets import subnet, traffic
@@ -32,11 +32,10 @@ from planner_reactor.planner.exploiting import of_drift, of_motor, of_sensor
 from planner_reactor.planner.exploiting_text import DerivedAction, written
 from planner_reactor.planner.uses import Model, Use
 from planner_reactor.rs.configurations import World
-from planner_reactor.rs.facts import names
-from planner_reactor.rs.given import constant, process_with_values
+from planner_reactor.rs.given import constant
 from planner_reactor.rs.parser import parse_process
 from planner_reactor.rs.printer import show
-from planner_reactor.rs.terms import Call, Par, Parameter, Process, Program, Symbol, Value, calls
+from planner_reactor.rs.terms import Call, Par, Parameter, Process, Program, calls
 from planner_reactor.rs.unknowns import Unknown
 from planner_reactor.rs.vocabulary import Signature
 
@@ -137,9 +136,7 @@ def _environment(environment: Process | str, world: World, given: Mapping[str, A
         if not call.arguments and (head := clauses[0].head) and process == call:
             own = tuple(constant(Unknown(h.name, -1) if isinstance(h, Parameter) else h.value) for h in head)
             return replace(call, arguments=own)
-    own_names = {s.name for c in calls(process) for s in names(c.arguments) if isinstance(s, Symbol)}
-    values: dict[str, Value] = {n: Unknown(n, -1) for n in own_names}
-    return process_with_values(process, {**values, **given})
+    return asked(process, world, given)
 
 
 # ---------------------------------------------------------------------------------------------------- selection
