@@ -1,7 +1,9 @@
 """`python -m tests.schedules [--many N] [--whole N]`: a long campaign; goes on where it stopped (out/schedules.jsonl).
 
 Batches of 1,000 schedules, each a line; of 100 batches 95 are the café's, 4 the greenhouse's, 1 the workcell's.
-`--whole N` runs N with the real reactor beside (out/whole.jsonl), in batches of 50. `--only SEED` runs one life alone.
+`--whole N` runs N with the real reactor beside (out/whole.jsonl), in batches of 50; `--orders N` N orders in which nine
+assumptions are given up (out/orders.jsonl), in batches of 20; `--sets` all 2⁹ sets (out/sets.jsonl). `--only LIFE` is
+one life alone.
 Ends with 1 if a schedule did not end as it has to.
 """
 
@@ -18,12 +20,14 @@ from pathlib import Path
 from typing import Any
 
 import planner_reactor
+from planner_reactor.workcell.evidence import ASSUMPTIONS
 from tests.schedules.ledger import Unsafe
 from tests.schedules.life import Life, Tally, domain
+from tests.schedules.orders import drawn, relaxes, walks
 from tests.schedules.whole import WholeLife
 
 BATCH, LIVES = 1000, 20
-WHOLE_BATCH = 50
+WHOLE_BATCH, ORDERS_BATCH = 50, 20
 OUT = Path("out")
 
 
@@ -76,6 +80,26 @@ def whole_batch(number: int) -> dict[str, Any]:
     return {"schedules": done, "wrong": wrong}
 
 
+def orders_batch(number: int) -> dict[str, Any]:
+    """So many orders, each with its comparisons of reactors."""
+    wrong, compared = [], 0
+    for seed in range(number * ORDERS_BATCH, (number + 1) * ORDERS_BATCH):
+        try:
+            compared += relaxes(drawn(seed))
+        except Unsafe as problem:
+            wrong.append(f"order {seed}: {problem}")
+    return {"schedules": ORDERS_BATCH, "compared": compared, "wrong": wrong}
+
+
+def sets_batch(number: int) -> dict[str, Any]:
+    """64 of the 2⁹ sets: which of three assumptions are given up is the number of the batch."""
+    given_up = [name for place, name in enumerate(ASSUMPTIONS[6:]) if number >> place & 1]
+    try:
+        return {"compared": walks(given_up, ASSUMPTIONS[:6]), "wrong": []}
+    except Unsafe as problem:
+        return {"compared": 0, "wrong": [f"sets {number}: {problem}"]}
+
+
 def sources() -> str:
     """A digest of what is under test."""
     root, digest = Path(planner_reactor.__file__).parent, hashlib.sha256()
@@ -101,7 +125,7 @@ def campaign(file: Path, batches: int, one: Callable[[int], dict[str, Any]]) -> 
 
 def told(rows: list[dict[str, Any]]) -> int:
     """Print the totals; 1 if anything was wrong."""
-    totals = {key: sum(row[key] for row in rows) for key in COUNTS if rows and key in rows[0]}
+    totals = {key: sum(row[key] for row in rows) for key in (*COUNTS, "compared") if rows and key in rows[0]}
     reached: Counter[str] = Counter()
     for row in rows:
         reached.update(row.get("reached", {}))
@@ -118,6 +142,8 @@ def main() -> None:
     parser = argparse.ArgumentParser(prog="python -m tests.schedules", description=__doc__)
     parser.add_argument("--many", type=int, default=1_000_000)
     parser.add_argument("--whole", type=int, default=0)
+    parser.add_argument("--orders", type=int, default=0)
+    parser.add_argument("--sets", action="store_true")
     parser.add_argument("--only", type=int, default=None)
     given = parser.parse_args()
     if given.only is not None:
@@ -125,6 +151,10 @@ def main() -> None:
         return
     if given.whole:
         raise SystemExit(campaign(OUT / "whole.jsonl", given.whole // WHOLE_BATCH, whole_batch))
+    if given.orders:
+        raise SystemExit(campaign(OUT / "orders.jsonl", given.orders // ORDERS_BATCH, orders_batch))
+    if given.sets:
+        raise SystemExit(campaign(OUT / "sets.jsonl", 8, sets_batch))
     raise SystemExit(campaign(OUT / "schedules.jsonl", given.many // BATCH, batch))
 
 
