@@ -48,6 +48,7 @@ ROWS: Mapping[str, tuple[int, str]] = {
     "27 adaptations refused for want of a disk": (27, "disk full, or sync fails"),
     "27 beats while the disk took nothing": (27, "and the reactor goes on reacting"),
     "29 crowds of 10,000": (29, "10,000 simultaneous situations"),
+    "29 instances beyond the budget turned away": (29, "the admission limit"),
     "30 crashes while something was held": (30, "reactor crash while the arm holds something"),
     "31 other versions of the link refused": (31, "version mismatch, both named"),
     "32 restarts in a storm": (32, "restart storm"),

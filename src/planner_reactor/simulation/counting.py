@@ -43,6 +43,7 @@ class Counting:
             "adaptation_repeated": lambda event: self._note("21 repeats that changed nothing"),
             "limit": lambda event: self._note("15 deeds that outlived their limit"),
             "zeno": lambda event: self._note("16 livelocks"),
+            "crowded": lambda event: self._note("29 instances beyond the budget turned away"),
             "storm": lambda event: self._note("32 situations that failed too often"),
             "watchdog": lambda event: self._note("watchdog: the machine was stopped"),
             "planner_began": lambda event: self._note("1 planners that resumed on what stood"),

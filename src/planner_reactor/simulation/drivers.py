@@ -1,7 +1,7 @@
 """What one reactor sees of a host that outlives it: the same processes, with a ledger of commands (law 11).
 
 When the reactor's process ends, its drivers see the connection go, and abandon what was begun on its behalf: sent =
-done + failed + abandoned + live, and nothing is abandoned twice.
+done + failed + abandoned + live, nothing is abandoned twice, and nothing lives longer than the limit of its process.
 """
 
 from __future__ import annotations
@@ -17,12 +17,16 @@ from msgspec.structs import replace
 from planner_reactor.runtime import Host
 from planner_reactor.runtime.host import BasicProcess
 
+LATE = 1e-3
+"""Seconds by which a command may be late: rounding."""
+
 
 class Drivers:
     """One incarnation's view of `base`: `host` is what its reactor is given."""
 
-    def __init__(self, base: Host, counts: Counter[str]) -> None:
+    def __init__(self, base: Host, counts: Counter[str], now: Callable[[], float] = lambda: 0.0) -> None:
         self.counts = counts
+        self._now = now
         self.live: dict[int, Generator[Any, Any, Any]] = {}
         self._takes_back: dict[int, Callable[[], object]] = {}
         self.closed = 0  # abandoned because the process was gone
@@ -33,6 +37,7 @@ class Drivers:
         self.host.cautions = base.cautions
         self.host.world = base.world
         self.host.watchdog = base.watchdog
+        self.host.ports = base.ports
         for name, process in base.processes.items():
             self.host.processes[name] = replace(process, routine=partial(self._run, process))
 
@@ -48,12 +53,12 @@ class Drivers:
             return begun
         self._sent += 1
         number = self._sent
-        self.live[number] = driven = self._drive(number, begun)
+        self.live[number] = driven = self._drive(number, begun, self._now() + process.limit + LATE)
         if process.abandon is not None:
             self._takes_back[number] = partial(process.abandon, *arguments)
         return driven
 
-    def _drive(self, number: int, begun: Generator[Any, Any, Any]) -> Generator[Any, Any, Any]:
+    def _drive(self, number: int, begun: Generator[Any, Any, Any], due: float) -> Generator[Any, Any, Any]:
         outcome = "abandoned"
         try:
             result = yield from begun
@@ -68,6 +73,7 @@ class Drivers:
             del self.live[number]
             self._takes_back.pop(number, None)
             self.counts[outcome] += 1
+            self.counts["overdue"] += self._now() > due
 
     def close(self) -> int:
         """The process is gone: everything it commanded is abandoned; how much that was."""

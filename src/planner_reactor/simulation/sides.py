@@ -30,7 +30,7 @@ AHEAD = 8
 NO_KEY: Key = (-1, -1)
 """Of what is no adaptation."""
 
-BUDGETS = Budgets(turns=100, processes=100_000)
+BUDGETS = Budgets(turns=100, processes=21_500)
 
 
 class ReactorSide:

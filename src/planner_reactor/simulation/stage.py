@@ -61,7 +61,8 @@ class Stage:
         self.clock = TimeOfDay(self.scheduler)
         self.book = Book()
         self.brain = Improviser(self.book, self.scheduler.random("planner"))
-        self.watch = Watch(self.scheduler, self.book)
+        self.intensity = INTENSITY if any(fault.kind == "failing" for fault in case.faults) else None
+        self.watch = Watch(self.scheduler, self.book, self.intensity)
         self.wire = Wire(self.scheduler, self._arrived, self._met)
         self.side: ReactorSide | None = None
         self.planner: PlannerSide | None = None
@@ -70,7 +71,6 @@ class Stage:
         self.armed: list[Fault] = []
         self.restarts: list[float] = []
         self.counting = Counting(self)
-        self.intensity = INTENSITY if any(fault.kind == "failing" for fault in case.faults) else None
         self.shop.did = lambda s, i, v: self.watch.did(self.side, s, i, v)
         self.shop.failed = self._failed
         self.shop.beat = self.watch.beat
@@ -141,7 +141,7 @@ class Stage:
         """The next incarnation, on what the disk holds."""
         if self.side is not None:
             return
-        drivers = Drivers(self.shop.host, Counter())
+        drivers = Drivers(self.shop.host, Counter(), lambda: self.scheduler.now)
         self.side = side = ReactorSide(
             self.scheduler, self.shop.host, drivers, self.disk, self.wire, self.trace, self._moment,
             intensity=self.intensity,

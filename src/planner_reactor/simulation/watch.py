@@ -8,10 +8,11 @@ is held against the planner's book, what it believes against what the sensors sa
 
 from __future__ import annotations
 
-from collections import Counter
+from collections import Counter, deque
 
 from planner_reactor.link.messages import Adaptation, Perception
 from planner_reactor.reactor.laws import Violation
+from planner_reactor.reactor.storms import COUNTED, Intensity
 from planner_reactor.runtime import Scheduler
 from planner_reactor.simulation.books import Book, Key
 from planner_reactor.simulation.sensors import CAUTIONS, PERIOD, Read, caution_of
@@ -22,11 +23,14 @@ from planner_reactor.trace import Event
 LATE = 0.5
 """Seconds by which a beat may be late: one round that waits its quantum, and rounding."""
 
+STORMY = 30
+"""Failures of a situation that may come to pass in the step in which it is stopped."""
+
 
 class Watch:
     """Collects violations of one run. `commands` counts the commands of the present incarnation."""
 
-    def __init__(self, scheduler: Scheduler, book: Book) -> None:
+    def __init__(self, scheduler: Scheduler, book: Book, intensity: Intensity | None = None) -> None:
         self.scheduler = scheduler
         self.book = book
         self.violations: list[Violation] = []
@@ -35,6 +39,8 @@ class Watch:
         self.heard = (0, 0)  # incarnation of the reactor and number of the last perception acted on
         self.gave: dict[int, list[Perception]] = {}  # incarnation → what it gave to the link
         self.late_versions = 0
+        self._intensity = intensity
+        self._failures: dict[str, deque[float]] = {}
         self._versions: dict[tuple[str, int], int] = {}
         self._last_beat: float | None = None
         self._side: ReactorSide | None = None
@@ -54,6 +60,7 @@ class Watch:
         self._read = read
         self._failing, self._changed = {}, {}
         self._versions.clear()
+        self._failures.clear()
         self._last_beat = None
         side.reactor.laws.ledgers.append(lambda: self._unbalanced(side))
 
@@ -76,6 +83,8 @@ class Watch:
         ended = counts["done"] + counts["failed"] + counts["abandoned"]
         if counts["sent"] != ended + len(side.drivers.live):
             return f"commands: {dict(counts)}, {len(side.drivers.live)} live"
+        if counts["overdue"]:
+            return f"commands: {counts['overdue']} lived longer than the limit of their process"
         if [p.number for p in side.sent[-2:]] != list(range(1, len(side.sent) + 1))[-2:]:
             return f"perceptions: {len(side.sent)} given, the last {side.sent[-1].number}"
         book = self.book.counts
@@ -118,6 +127,21 @@ class Watch:
             self._serves(event.data["situation"])
         elif event.kind in ("assumption_failure", "assumption_holds"):
             self._believes(event.data["assumption"], failing=event.kind == "assumption_failure")
+        elif event.kind == "ended" and not event.data["ok"] and event.data["cause"] in COUNTED:
+            self._fails(event.data["situation"])
+        elif event.kind in ("halted", "adaptation_applied"):
+            self._failures.clear()
+
+    def _fails(self, situation: str) -> None:
+        """Law 13: what fails too often is stopped, within the step in which it does (row 32)."""
+        if (limit := self._intensity) is None:
+            return
+        now, times = self.scheduler.now, self._failures.setdefault(situation, deque())
+        times.append(now)
+        while times[0] < now - limit.window:
+            times.popleft()
+        if len(times) > limit.failures + STORMY:
+            self.breach(13, f"{situation} has failed {len(times)} times in {limit.window} s")
 
     def _serves(self, situation: str) -> None:
         """Law 14: no body begins that rests on what was read to fail for as long as its monitor may take."""
