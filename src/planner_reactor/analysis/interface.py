@@ -86,10 +86,13 @@ def _connectors(call: Call, world: World, own: Any, outside: Collection[Value]) 
 
 
 def sensors(environment: Process, world: World, ports: Collection[Value]) -> tuple[str, ...]:
-    """The definitions of the environment that themselves write one of these ports: the pseudo-bounds of X §4.3.2.
+    """The definitions of the environment that themselves write one of these ports, or one that nothing in it reads: the
+    pseudo-bounds of X §4.3.2.
 
     A component that writes it in its own rounds is none: it goes on, and says where it is all the time.
     """
+    own = traffic(environment, world)
+    ports = {*ports, *((own.writes | own.streams) - own.reads)}
     found: dict[str, None] = {}
     seen: set[tuple[str, tuple[Value, ...]]] = set()
     waiting: list[tuple[str, tuple[Value, ...], Process, dict[str, Value]]] = [("", (), environment, {})]
@@ -103,8 +106,8 @@ def sensors(environment: Process, world: World, ports: Collection[Value]) -> tup
             for schema in world.program.clauses(call.name):
                 if (call.name, values) not in seen:
                     seen.add((call.name, values))
-                    own = {h.name: v for h, v in zip(schema.head, values, strict=False) if isinstance(h, Parameter)}
-                    waiting.append((call.name, values, schema.body, own))
+                    inner = {h.name: v for h, v in zip(schema.head, values, strict=False) if isinstance(h, Parameter)}
+                    waiting.append((call.name, values, schema.body, inner))
     return tuple(sorted(found))
 
 
