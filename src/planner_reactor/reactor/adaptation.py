@@ -24,8 +24,9 @@ from msgspec.structs import replace
 from planner_reactor.errors import DiskError, RefusedError
 from planner_reactor.link.messages import Adaptation
 from planner_reactor.link.surgeries import drained, surgery
-from planner_reactor.reactor.committed import Committed
+from planner_reactor.reactor.committed import Committed, remember
 from planner_reactor.reactor.journal import Begun, Decided, Journal
+from planner_reactor.reactor.preparing import Prepared
 from planner_reactor.reactor.reactions import Reactions
 from planner_reactor.reactor.waiting import refuse_waiting_for_itself
 from planner_reactor.rs.reactions import (
@@ -108,12 +109,9 @@ class Transactions:
         self._journal = journal
         self._finished = finished
         self._by_root: dict[Root, Transaction] = {}
+        self.under_way: tuple[Transaction, ...] = ()
         self._removals: deque[Transaction] = deque()
         self._removing: tuple[Root, Transaction] | None = None
-
-    @property
-    def under_way(self) -> tuple[Transaction, ...]:
-        return tuple(self._by_root.values())
 
     @property
     def pending_situations(self) -> frozenset[str]:
@@ -137,28 +135,29 @@ class Transactions:
         removing = () if self._removing is None else (self._removing[1],)
         return [reaction for t in (*removing, *self._removals) for reaction in t.killed]
 
-    def begin(
-        self, adaptation: Adaptation, reactions: tuple[Reaction, ...], killed: tuple[Reaction, ...], bound: float
-    ) -> Transaction:
+    def begin(self, prepared: Prepared, killed: tuple[Reaction, ...], bound: float) -> Transaction:
         """Load the definitions and start the script; it is applied, or taken back, from here on by itself.
 
         `RefusedError` (reason disk) if the journal cannot take it.
         """
-        now = self._scheduler.now
+        adaptation, now = prepared.adaptation, self._scheduler.now
         before = self._journal.state.committed
+        remember(adaptation.definitions, prepared.clauses)
         try:
             self._journal.write(Begun(adaptation, now), sync=False)
         except DiskError as problem:
             raise RefusedError("disk", f"it cannot be made durable: {problem}") from problem
+        reactions = tuple([prepared.reactions[label] for label in adaptation.adds])
         transaction = Transaction(adaptation, reactions, killed, before, now, bound)
         deadline = adaptation.deadline if adaptation.deadline is not None else bound
-        self._executer.load([r.schema for r in reactions])
+        self._executer.load(prepared.compiled)
         transaction.limit = LONGEST if isinf(deadline) else deadline
         transaction.timer = self._scheduler.call_after(transaction.limit, lambda: self._expire(transaction))
         transaction.root = self._executer.start_process(
             script(adaptation, killed), name=f"adaptation {adaptation.id}"
         )
         self._by_root[transaction.root] = transaction
+        self.under_way = tuple(self._by_root.values())
         return transaction
 
     def commit(self, number: int) -> Transaction | None:
@@ -207,6 +206,7 @@ class Transactions:
 
     def _close(self, root: Root, transaction: Transaction) -> None:
         del self._by_root[root]
+        self.under_way = tuple(self._by_root.values())
         if transaction.timer is not None:
             transaction.timer.cancel()
         if root.outcome == "stop":

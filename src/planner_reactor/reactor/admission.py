@@ -15,14 +15,13 @@ from collections.abc import Callable, Collection, Container, Iterable, Iterator,
 
 import msgspec
 
-from planner_reactor.errors import RefusedError, RSError
+from planner_reactor.errors import RefusedError
 from planner_reactor.link.messages import Adaptation
 from planner_reactor.reactor.migrating import refuse_lost_arguments
+from planner_reactor.reactor.preparing import Prepared
 from planner_reactor.reactor.reactions import Reactions
-from planner_reactor.rs.loading import load
-from planner_reactor.rs.reactions import Reaction, children, cycle, reaction_of
-from planner_reactor.rs.terms import Program, Schema, Value
-from planner_reactor.rs.vocabulary import Signature
+from planner_reactor.rs.reactions import Reaction, children, cycle
+from planner_reactor.rs.terms import Value
 
 
 class Standing(msgspec.Struct, frozen=True):
@@ -34,9 +33,7 @@ class Standing(msgspec.Struct, frozen=True):
     taken: Container[int]
     epoch: int
     used_labels: Collection[int]
-    signatures: Mapping[str, Signature]
     functions: Mapping[str, Callable[..., Value]]
-    equation: Program  # equation (3), so that what is added is checked as guarded reactions
 
 
 MODES = ("drain", "wait", "versions")
@@ -51,20 +48,20 @@ def is_text(adaptation: Adaptation) -> bool:
     return True
 
 
-def examine(adaptation: Adaptation, standing: Standing) -> tuple[Reaction, ...]:
-    """The reactions that the adaptation adds, in its order of adds (bottom-up)."""
+def examine(prepare: Callable[[], Prepared], adaptation: Adaptation, standing: Standing) -> Prepared:
+    """The adaptation with its text read and checked, which is only asked for if nothing else speaks against it."""
     _identity(adaptation, standing)
     _versions(adaptation, standing)
-    schemas = _definitions(adaptation, standing)
-    new = _labels(adaptation, standing, schemas)
+    prepared = prepare()
+    if prepared.refusal is not None:
+        raise prepared.refusal
+    new = _labels(adaptation, standing, prepared.reactions)
     _structure(adaptation, standing, new)
     refuse_lost_arguments(adaptation, Reactions.of(standing.reactions), new, standing.functions)
-    return new
+    return prepared
 
 
 def _identity(adaptation: Adaptation, standing: Standing) -> None:
-    if not is_text(adaptation):
-        raise RefusedError("text", "it holds characters that are no text, or numbers beyond 64 bits")
     if adaptation.id in standing.taken:
         raise RefusedError("repeated", f"adaptation {adaptation.id} was taken before")
     if adaptation.epoch < standing.epoch:
@@ -87,27 +84,7 @@ def _versions(adaptation: Adaptation, standing: Standing) -> None:
         raise RefusedError("structure", f"a situation is named twice among {', '.join(names)}")
 
 
-def _definitions(adaptation: Adaptation, standing: Standing) -> tuple[Schema, ...]:
-    try:
-        program = load(
-            adaptation.definitions,
-            file=f"<adaptation {adaptation.id}>",
-            signatures=standing.signatures,
-            functions=standing.functions,
-            given=standing.equation,
-        )
-    except RSError as problem:
-        raise RefusedError("text", str(problem)) from None
-    return program.schemas
-
-
-def _labels(adaptation: Adaptation, standing: Standing, schemas: Sequence[Schema]) -> tuple[Reaction, ...]:
-    found = {}
-    for schema in schemas:
-        reaction = reaction_of(schema)
-        if reaction is None:
-            raise RefusedError("labels", f"{schema.name} is no reaction, expected clauses P[n] = …")
-        found[reaction.label] = reaction
+def _labels(adaptation: Adaptation, standing: Standing, found: Mapping[int, Reaction]) -> tuple[Reaction, ...]:
     if sorted(found) != sorted(adaptation.adds):
         raise RefusedError("labels", f"defines {sorted(found)}, adds {sorted(adaptation.adds)}")
     if reused := [label for label in adaptation.adds if label in standing.used_labels]:
@@ -146,11 +123,11 @@ class After:
     def __init__(self, standing: Reactions, killed: frozenset[int], new: Sequence[Reaction]) -> None:
         self._standing = standing
         self._killed = killed
-        self._new = Reactions(new)
+        self._new = new
 
     def serving(self, situation: str) -> tuple[Reaction, ...]:
-        staying = (r for r in self._standing.serving(situation) if r.label not in self._killed)
-        return (*staying, *self._new.serving(situation))
+        staying = [r for r in self._standing.serving(situation) if r.label not in self._killed]
+        return (*staying, *[r for r in self._new if r.situation == situation])
 
     def bereft(self, killed: Iterable[Reaction]) -> Iterator[Reaction]:
         """The reactions that stay, and assert a situation that these served."""

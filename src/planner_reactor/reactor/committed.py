@@ -8,7 +8,6 @@ situations, bodies, drains) is not kept: a crash ends that, and the world is sen
 from __future__ import annotations
 
 from collections.abc import Mapping
-from functools import lru_cache
 from zlib import crc32
 
 import msgspec
@@ -127,11 +126,18 @@ class Committed(msgspec.Struct, frozen=True):
 
 def clauses_of(adaptation: Adaptation) -> Mapping[int, str]:
     """The clauses that an adaptation adds, by label, each in canonical print."""
-    return _clauses(adaptation.definitions)
+    if (found := _printed.get(adaptation.definitions)) is None:
+        program = parse_program(adaptation.definitions)
+        found = {s.head[0].value: show(s) for s in program.schemas if s.name == REACTION}  # type: ignore[union-attr, misc]
+        remember(adaptation.definitions, found)
+    return found
 
 
-@lru_cache(maxsize=64)
-def _clauses(definitions: str) -> Mapping[int, str]:
-    """Asked at COMMIT and at each recovery from a journal that still has it: the text is read once."""
-    program = parse_program(definitions)
-    return {s.head[0].value: show(s) for s in program.schemas if s.name == REACTION}  # type: ignore[union-attr, misc]
+def remember(definitions: str, clauses: Mapping[int, str]) -> None:
+    """A text that was read before it is committed, or is recovered again and again, need not be read once more."""
+    _printed[definitions] = clauses
+    if len(_printed) > REMEMBERED:
+        del _printed[next(iter(_printed))]
+
+
+_printed: dict[str, Mapping[int, str]] = {}

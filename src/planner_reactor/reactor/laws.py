@@ -187,17 +187,19 @@ class Laws:
 
     def check(self) -> None:
         """Ask every law about the present state: cheap enough to be asked after each event."""
-        self._atomic()
-        self._bounded()
+        under_way = self._reactor.transactions.under_way
+        if under_way or self._promised:
+            self._atomic(under_way)
+            self._bounded(under_way)
         self._owned()
-        self._durable()
+        self._durable(under_way)
         self._perceptions()
-        self._balanced()
+        self._balanced(len(under_way))
         self._finite()
         self._disabled()
         self._halted()
 
-    def _atomic(self) -> None:
+    def _atomic(self, under_way: tuple[Transaction, ...]) -> None:
         """Law 1: of an adaptation everything is there or nothing; what goes, goes first."""
         for transaction in self._promised:
             adds = set(transaction.adaptation.adds)
@@ -205,7 +207,7 @@ class Laws:
                 self.breach(1, f"adaptation {transaction.adaptation.id} was applied without adding {missing}")
             self._added -= adds
         self._promised.clear()
-        for transaction in self._reactor.transactions.under_way:
+        for transaction in under_way:
             self._half(transaction)
             if transaction.adds and len(transaction.kills) < len(transaction.adaptation.kills):
                 self.breach(1, f"adaptation {transaction.adaptation.id} added reactions beside those that it removes")
@@ -214,10 +216,11 @@ class Laws:
         if self._reactor.scheduler.now > transaction.surgery + GRACE:
             self.breach(1, f"adaptation {transaction.adaptation.id} was half applied for some time")
 
-    def _bounded(self) -> None:
+    def _bounded(self, under_way: tuple[Transaction, ...]) -> None:
         """Law 4: an adaptation under way is within its bound. A loop that was held up takes it back as it goes on."""
-        for transaction in self._reactor.transactions.under_way:
-            self._in_time(transaction, self._reactor.scheduler.attended)
+        attended = self._reactor.scheduler.attended
+        for transaction in under_way:
+            self._in_time(transaction, attended)
 
     def _in_time(self, transaction: Transaction, now: float) -> None:
         if now > transaction.received + transaction.limit + GRACE:
@@ -230,21 +233,23 @@ class Laws:
                 if not self._reactor.is_live_owner(inhibition.owner):
                     self.breach(5, f"{situation.name} is inhibited by {named(inhibition.owner)}, which is gone")
 
-    def _durable(self) -> None:
+    def _durable(self, under_way: tuple[Transaction, ...]) -> None:
         """Law 8: what runs is what the journal says, once no change is half-way."""
-        if any(t.state == "committed" for t in self._reactor.transactions.under_way):
-            return
+        for transaction in under_way:
+            if transaction.state == "committed":
+                return
         running, written = self._reactor.reactions, self._reactor.journal.state.committed.clauses
-        concerned = running.touched() | self._rewritten(written)
-        self._unequal = {label for label in self._unequal | concerned if (label in running) != (label in written)}
+        concerned = running.touched()
+        if written is not self._written:
+            concerned |= self._rewritten(written)
+        if concerned or self._unequal:
+            self._unequal = {label for label in self._unequal | concerned if (label in running) != (label in written)}
         if self._unequal and not self._reactor.restoring and not self._reactor.halted:
             self.breach(8, f"reactions {sorted(self._unequal)} run and are not in the journal, or the reverse")
 
     def _rewritten(self, written: Mapping[int, str]) -> set[int]:
         """The labels under which the journal may say something else than when this was asked last."""
         seen, self._written = self._written, written
-        if seen is written:
-            return set()
         changed = seen.keys_changed_until(written) if isinstance(seen, Persistent) else None
         return {*seen, *written} if changed is None else changed
 
@@ -254,14 +259,14 @@ class Laws:
         if channel.sent != channel.taken + len(channel):
             self.breach(10, f"{channel.sent} perceptions sent, {channel.taken} taken, {len(channel)} waiting")
 
-    def _balanced(self) -> None:
+    def _balanced(self, under_way: int) -> None:
         """Law 11: all ledgers balance."""
         live = len(self._reactor.situations.instances)
         if self._asserted != self._ended + live:
             self.breach(11, f"instances: {self._asserted} asserted, {self._ended} ended, {live} live")
         counts = self._reactor.counts
         settled = counts["applied"] + counts["refused"] + counts["timed_out"]
-        if counts["received"] != settled + len(self._reactor.transactions.under_way):
+        if counts["received"] != settled + under_way:
             self.breach(11, f"adaptations: {counts}")
         for ledger in self.ledgers:
             if problem := ledger():

@@ -65,6 +65,9 @@ class Persistent(Mapping[K, V]):
             version = version._newer  # type: ignore[assignment]  # it holds nothing, so there is a newer one
         return version._held[key]
 
+    def __contains__(self, key: object) -> bool:
+        return key in self._held if self._held is not None else super().__contains__(key)
+
     def __iter__(self) -> Iterator[K]:
         return iter(self._whole())
 

@@ -59,11 +59,11 @@ class Reactions(MutableMapping[int, Reaction]):
 
     def serving(self, situation: str) -> tuple[Reaction, ...]:
         """The reactions that serve a situation."""
-        return tuple(self._by_label[label] for label in self._serving.get(situation, ()))
+        return tuple([self._by_label[label] for label in self._serving.get(situation, ())])
 
     def asserting(self, situation: str) -> tuple[Reaction, ...]:
         """The reactions that assert a situation."""
-        return tuple(self._by_label[label] for label in self._asserting.get(situation, ()))
+        return tuple([self._by_label[label] for label in self._asserting.get(situation, ())])
 
     def clauses(self, name: str) -> tuple[Schema, ...]:
         """The definitions of a name: `P` has one for each reaction, no other name has any."""
@@ -71,7 +71,9 @@ class Reactions(MutableMapping[int, Reaction]):
 
     def touched(self) -> set[int]:
         """The labels under which something came or went since this was asked last."""
-        touched, self._touched = self._touched, set()
+        if not (touched := self._touched):
+            return set()
+        self._touched = set()
         return touched
 
 

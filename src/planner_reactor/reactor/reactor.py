@@ -30,6 +30,7 @@ from planner_reactor.reactor.heartbeat import Heartbeat
 from planner_reactor.reactor.journal import Decided, Journal, Left
 from planner_reactor.reactor.laws import Laws
 from planner_reactor.reactor.life import Life
+from planner_reactor.reactor.preparing import Prepared, Vocabulary, prepare
 from planner_reactor.reactor.reactions import Reactions
 from planner_reactor.reactor.readings import Readings
 from planner_reactor.reactor.storms import Intensity, Storms
@@ -73,7 +74,7 @@ class Reactor:
         self.journal = journal or Journal(NoDisk())
         self.counts: Counter[str] = Counter(received=0, applied=0, refused=0, timed_out=0, changes_applied=0)
         self.stub_triggers = 0
-        self._signatures = {**BUILT_IN, **self.host.signatures}
+        self.vocabulary = Vocabulary({**BUILT_IN, **self.host.signatures}, self.host.functions, EQUATION_3)
         self._laws_due = False
         self._lifetimes: dict[int, Lifetime] = {}
         self._loaded: dict[int, Reaction] = {}
@@ -136,25 +137,32 @@ class Reactor:
 
     # -- adaptation
 
-    def receive(self, adaptation: Adaptation) -> None:
+    def prepare(self, adaptation: Adaptation) -> Prepared:
+        """Read and check its text beforehand: most of what `receive` costs. May be called from any thread."""
+        return prepare(adaptation, self.vocabulary, self.executer.compiled)
+
+    def receive(self, given: Adaptation | Prepared) -> None:
         """Take an adaptation: refused whole, with a reason, or begun (its outcome is a perception).
 
         A repeat of one that is under way says nothing new, of one that was applied it is acknowledged again.
         """
+        before, adaptation = (given, given.adaptation) if isinstance(given, Prepared) else (None, given)
         sound = is_text(adaptation)
         if sound and repeated(self, adaptation):
             return
         self.counts["received"] += 1
         self.trace.record("adaptation_received", id=adaptation.id, purpose=adaptation.purpose if sound else "")
         try:
+            if not sound:
+                raise RefusedError("text", "it holds characters that are no text, or numbers beyond 64 bits")
             if self.halted:
                 raise RefusedError("halted", "the reactor is halted, expected a reset first")
-            reactions = examine(adaptation, self._standing())
-            killed = tuple(self.reactions[label] for label in adaptation.kills)
+            prepared = examine(lambda: before or self.prepare(adaptation), adaptation, self._standing())
+            killed = tuple([self.reactions[label] for label in adaptation.kills])
             self.transactions.examine(adaptation, killed, self.reactions, self.situations.disabled_by)
             bound = self.bound(adaptation)
             self.transactions.revoke(adaptation.epoch)
-            self.transactions.begin(adaptation, reactions, killed, bound)
+            reactions = self.transactions.begin(prepared, killed, bound).reactions
         except RefusedError as refusal:
             committed = self.journal.state.committed
             if sound and adaptation.epoch == committed.epoch and adaptation.id not in committed.taken:
@@ -200,13 +208,14 @@ class Reactor:
             return False
         for reaction in transaction.killed:
             self._lifetimes[reaction.label].last = transaction.before.versions.get(reaction.situation or "", 0)
+        self.assumptions.outlived(transaction.adaptation, transaction.before)
         self.assumptions.disable()
         return True
 
     def bound(self, adaptation: Adaptation) -> float:
         """Seconds in which the adaptation will have been applied (R §5.5, *bounded*)."""
         limits = {name: process.limit for name, process in self.host.processes.items()}
-        return bound_of(adaptation, self.reactions, self._signatures, limits)
+        return bound_of(adaptation, self.reactions, self.vocabulary.signatures, limits)
 
     def _standing(self) -> Standing:
         committed = self.journal.state.committed
@@ -217,9 +226,7 @@ class Reactor:
             taken=committed.taken,
             epoch=committed.epoch,
             used_labels=range(committed.highest_label + 1),
-            signatures=self._signatures,
             functions=self.host.functions,
-            equation=EQUATION_3,
         )
 
     def _root_ended(self, root: Root) -> None:
@@ -267,7 +274,8 @@ class Reactor:
         """One change of the situations or guards: traced, watched by the laws, and acted on."""
         self.trace.record(kind, **fields)
         self.laws.happened(kind, fields)
-        self.settle_laws()
+        if not self._laws_due:
+            self.settle_laws()
         if (watch := self._watches.get(kind)) is not None:
             watch(**fields)
 
@@ -362,6 +370,7 @@ class Reactor:
     def _assumption_told(self, kind: PerceptionKind, assumption: str, cause: str = "") -> None:
         self.trace.record(kind, assumption=assumption, **({"cause": cause} if cause else {}))
         self.perceive(kind, assumption, cause=cause)
+        self.settle_laws()
 
     # -- how it stands
 

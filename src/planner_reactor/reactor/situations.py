@@ -47,7 +47,7 @@ class Situations:
         self._awaited: dict[Strand, Instance] = {}
         self._queued: dict[Strand, QueuedAssert] = {}
         self._held_by: dict[Hashable, list[Situation]] = {}  # what an owner inhibits, in the order in which it did
-        self._count = 0
+        self.asserted = 0  # how many instances there ever were
         self._tickets = 0
         self.versions = Versions()
         self.serving = Serving(self.versions, waker, notice)
@@ -68,7 +68,7 @@ class Situations:
     @property
     def held(self) -> list[Situation]:
         """The situations that something inhibits."""
-        return list(dict.fromkeys(s for held in self._held_by.values() for s in held))
+        return list(dict.fromkeys([s for held in self._held_by.values() for s in held])) if self._held_by else []
 
     def is_disabled(self, name: str, assumption: str) -> bool:
         return any(held.owner == ("assumption", assumption) for held in self.named(name).inhibitions)
@@ -111,9 +111,9 @@ class Situations:
         self, situation: Situation, arguments: tuple[object, ...], owner: Instance | None, strand: Strand | None,
         again: bool,
     ) -> None:  # fmt: skip
-        self._count += 1
+        self.asserted += 1
         version = self.versions.newest(situation.name)
-        instance = Instance(self._count, situation, arguments, owner, strand, again, version)
+        instance = Instance(self.asserted, situation, arguments, owner, strand, again, version)
         situation.instances[instance.number] = self._instances[instance.number] = instance
         if strand is not None:
             self._awaited[strand] = instance

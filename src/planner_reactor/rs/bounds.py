@@ -224,7 +224,7 @@ class Bounds:
         seconds = signature.window[1] if signature.window is not None else inf
         seconds = max(seconds, self._limits.get(call.name, 0.0))
         aborts = "abort" in signature.outcomes or call.name not in BUILT_IN
-        mistaken = 0.0 if any(isinstance(argument, Variable) for argument in call.arguments) else NEVER
+        mistaken = 0.0 if any([isinstance(argument, Variable) for argument in call.arguments]) else NEVER
         return Latest(seconds if "stop" in signature.outcomes else NEVER, seconds if aborts else mistaken, seconds)
 
     def _defined(
@@ -249,7 +249,10 @@ class Bounds:
 
 def either(*ways: Latest) -> Latest:
     """One of these, nobody knows which."""
-    return Latest(max(way.ok for way in ways), max(way.ab for way in ways), max(way.end for way in ways))
+    ok = ab = end = NEVER
+    for way in ways:
+        ok, ab, end = max(ok, way.ok), max(ab, way.ab), max(end, way.end)
+    return Latest(ok, ab, end)
 
 
 def _any(one: Latest, other: Latest) -> Latest:

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from planner_reactor.runtime.budgets import Budgets
 from planner_reactor.runtime.clock import Clock, VirtualClock, WallClock
+from planner_reactor.runtime.definitions import Clause
 from planner_reactor.runtime.executer import Executer, Statistics
 from planner_reactor.runtime.host import Host, Watchdog, World
 from planner_reactor.runtime.outcomes import Control, Label, Outcome
@@ -23,6 +24,7 @@ __all__ = [
     "Body",
     "Budgets",
     "Caution",
+    "Clause",
     "Clock",
     "Control",
     "Executer",

@@ -28,6 +28,7 @@ from planner_reactor.rs.terms import (
     Schema,
     Seq,
     Spawn,
+    Symbol,
     Value,
     Variable,
 )
@@ -41,7 +42,11 @@ from planner_reactor.runtime.outcomes import Control, Guards
 from planner_reactor.runtime.ports import Ports
 from planner_reactor.runtime.regions import Region, exported
 from planner_reactor.runtime.strands import OUTSIDE, SENSING, SERVING, UNBOUND, Frame, Instruction, Where
-from planner_reactor.runtime.values import Functions, frames, reader, tuples
+from planner_reactor.runtime.values import CONSTANTS, Functions, frames, reader, tuples
+
+
+MOST_FORMS = 256
+"""Forms of scripts that are kept compiled."""
 
 
 class Exits(msgspec.Struct, frozen=True):
@@ -60,6 +65,7 @@ class Compiler:
         self.functions = functions
         self.ports = Ports()
         self.definitions = Definitions(self.schema)
+        self._scripts: dict[tuple[tuple[str, int], ...], tuple[Instruction, Frame]] = {}
         self.part = _ends(forks.PartEnd(kernel, ok=True, settles=True), forks.PartEnd(kernel, ok=False, settles=False))
         self.share = _ends(forks.PartEnd(kernel, ok=True, settles=False), forks.PartEnd(kernel, ok=False, settles=True))
         self.rival = _ends(forks.RivalEnd(kernel, ok=True), forks.RivalEnd(kernel, ok=False))
@@ -78,6 +84,24 @@ class Compiler:
         entry = body.process(schema.body, region, exits, body.outside)
         body.straighten()
         return Code(entry, tuple(region.blank[len(schema.head) :]))
+
+    def script(self, process: Process) -> tuple[Instruction, Frame] | None:
+        """A root that is a chain `A[1] : B[s] : …` of constants: compiled once for all of its form; None if it is not.
+        """
+        if not isinstance(process, Cond):
+            return None
+        form, values = _form(process)
+        if len(form) < len(process.parts):
+            return None
+        if (compiled := self._scripts.get(form)) is None:
+            names = iter([f"argument {i + 1}" for i in range(len(values))])
+            general = [Call(name, tuple([Variable(next(names)) for _ in range(count)])) for name, count in form]
+            bound = dict.fromkeys((f"argument {i + 1}" for i in range(len(values))), None)
+            if len(self._scripts) >= MOST_FORMS:
+                self._scripts.clear()
+            compiled = self._scripts[form] = self.root("script", Cond(tuple(general)), bound)
+        entry, frame = compiled
+        return entry, [*values, *frame[len(values) :]]
 
     def root(self, name: str, process: Process, bound: Mapping[str, Value]) -> tuple[Instruction, Frame]:
         """A process on its own: where it begins, and its frame. Its results are all that leave it."""
@@ -325,6 +349,22 @@ class _Body:
         if is_tail and not passed.targets:
             return instructions.TailCall(definition, passed, failed)
         return instructions.Call(self.kernel, definition, passed, failed, ok=exits.ok, ab=exits.ab)
+
+
+def _form(chain: Cond) -> tuple[tuple[tuple[str, int], ...], list[Value]]:
+    """The names of its calls with how many arguments they have, up to the first that is of another kind; the arguments.
+    """
+    form: list[tuple[str, int]] = []
+    values: list[Value] = []
+    for part in chain.parts:
+        if not isinstance(part, Call) or part.results:
+            break
+        constants = [a.name if isinstance(a, Symbol) else a.value for a in part.arguments if isinstance(a, CONSTANTS)]
+        if len(constants) < len(part.arguments):
+            break
+        form.append((part.name, len(constants)))
+        values += constants
+    return tuple(form), values
 
 
 def _ends(ok: Instruction, ab: Instruction) -> Exits:

@@ -113,16 +113,24 @@ class Definitions:
 
     def named(self, name: str) -> Definition:
         if (found := self._by_name.get(name)) is None:
-            found = self._by_name[name] = Definition(name)
+            found = self._by_name.setdefault(name, Definition(name))  # two threads may ask
         return found
 
-    def load(self, schemas: Iterable[Schema]) -> None:
+    def compiled(self, schema: Schema, *, now: bool) -> Clause:
+        """This clause, to be loaded; compiled `now`, or when it is first called. May be called from any thread."""
+        clause = Clause(schema, self._compile)
+        if now:
+            clause.plain()
+        return clause
+
+    def load(self, schemas: Iterable[Schema | Clause]) -> None:
         """Add these clauses: all of them, or none if one clashes with what is there."""
         added: list[Schema] = []
         try:
-            for schema in schemas:
-                self.named(schema.name).add(Clause(schema, self._compile))
-                added.append(schema)
+            for given in schemas:
+                clause = given if isinstance(given, Clause) else Clause(given, self._compile)
+                self.named(clause.schema.name).add(clause)
+                added.append(clause.schema)
         except InputError:
             self.unload(added)
             raise

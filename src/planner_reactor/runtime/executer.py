@@ -13,11 +13,12 @@ import msgspec
 
 from planner_reactor.errors import InputError, nearest
 from planner_reactor.rs.prelude import PRELUDE
-from planner_reactor.rs.terms import Call, Process, Program, Schema, Value, Variable
+from planner_reactor.rs.terms import Call, Process, Program, Schema, Value, Variable, calls
 from planner_reactor.rs.vocabulary import BUILT_IN
 from planner_reactor.runtime.basic import Basic
 from planner_reactor.runtime.budgets import Budgets
 from planner_reactor.runtime.compiler import Compiler
+from planner_reactor.runtime.definitions import Clause
 from planner_reactor.runtime.host import Host
 from planner_reactor.runtime.kernel import Kernel
 from planner_reactor.runtime.leaves import Use
@@ -126,13 +127,19 @@ class Executer:
             self._killed.add(root)
             self._kernel.kill_root(root)
 
-    def load(self, schemas: Iterable[Schema]) -> None:
+    def compiled(self, schemas: Iterable[Schema]) -> tuple[Clause, ...]:
+        """Definitions made ready to be loaded. May be called from any thread."""
+        definitions = self._compiler.definitions
+        return tuple([definitions.compiled(s, now=not _has_ports(s)) for s in schemas])
+
+    def load(self, schemas: Iterable[Schema | Clause]) -> None:
         """Add definitions while everything runs: all of them, or none if two clauses have the same head."""
-        new = tuple(schemas)
+        given = tuple(schemas)
+        new = tuple([g.schema if isinstance(g, Clause) else g for g in given])
         for schema in new:
             if schema.name in BUILT_IN or schema.name in self._controls:
                 raise InputError(f"{schema.name} is a process already, a definition needs another name")
-        self._compiler.definitions.load(new)
+        self._compiler.definitions.load(given)
         if self._witness is not None:
             self._witness.loaded(new)
 
@@ -231,7 +238,9 @@ class Executer:
     def _start(self, name: str, process: Process, bound: Mapping[str, Value]) -> Root:
         self._count += 1
         root = Root(name, self._count)
-        entry, frame = self._compiler.root(name, process, bound)
+        # whoever looks at the places of leaves tells the roots apart by them
+        shared = None if self._kernel.observer is not None or bound else self._compiler.script(process)
+        entry, frame = shared or self._compiler.root(name, process, bound)
         strand = root.strand = Strand(entry, frame, root)
         self.roots.append(root)
         self._kernel.live += 1
@@ -265,3 +274,8 @@ class Executer:
             self._told(root)
         if self._running and not self.roots:
             self.scheduler.stop()
+
+
+def _has_ports(schema: Schema) -> bool:
+    """Ports are the loop's own: what has any is compiled there, when it is first called."""
+    return any([call.name in ("IN", "OUT") for call in calls(schema.body)])

@@ -123,7 +123,7 @@ class Kernel:
 
     def settle(self) -> None:
         """Everything that belongs to the present step."""
-        silent = self.silent
+        silent, verdicts = self.silent, self.verdicts
         while True:
             while silent:
                 strand = silent.popleft()
@@ -132,8 +132,8 @@ class Kernel:
                     self.advance(strand, strand.pc)
                     if self.watched:  # it may have ended, and never have a turn
                         self.moved(strand)
-            if self.verdicts:
-                self.decide(self.verdicts.next())
+            if verdicts.new or verdicts.ranked:
+                self.decide(verdicts.next())
             elif self._later:
                 self._later.popleft()()
             else:

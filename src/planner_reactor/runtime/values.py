@@ -31,7 +31,7 @@ Reader: TypeAlias = Callable[[Frame], Value]
 Tuples: TypeAlias = Callable[[Frame], tuple[Value, ...]]
 Frames: TypeAlias = Callable[[Frame], Frame]
 
-_CONSTANTS = (Number, Text, Symbol)
+CONSTANTS = (Number, Text, Symbol)
 _SMALL = 1 << 200  # well below the bound on integers of `rs.expressions`
 
 
@@ -52,7 +52,7 @@ def reader(expression: Expression, slots: Slots, functions: Functions) -> Reader
 
 def tuples(expressions: tuple[Expression, ...], slots: Slots, functions: Functions) -> Tuples:
     """A closure that gives the values of all the expressions for a frame."""
-    constant = tuple([e.name if isinstance(e, Symbol) else e.value for e in expressions if isinstance(e, _CONSTANTS)])
+    constant = tuple([e.name if isinstance(e, Symbol) else e.value for e in expressions if isinstance(e, CONSTANTS)])
     if len(constant) == len(expressions):
         return lambda frame: constant
     readers = [reader(e, slots, functions) for e in expressions]

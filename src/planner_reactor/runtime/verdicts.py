@@ -15,14 +15,14 @@ from planner_reactor.runtime.strands import FORKED, Fork
 class Verdicts:
     """The `#`s that wait for their verdict; `new` holds those not ranked yet (outside a verdict: all)."""
 
-    __slots__ = ("_ranked", "new")
+    __slots__ = ("ranked", "new")
 
     def __init__(self) -> None:
         self.new: list[Fork] = []
-        self._ranked: list[tuple[int, tuple[int, ...], Fork]] = []
+        self.ranked: list[tuple[int, tuple[int, ...], Fork]] = []
 
     def __bool__(self) -> bool:
-        return bool(self.new or self._ranked)
+        return bool(self.new or self.ranked)
 
     def add(self, fork: Fork) -> None:
         """A part of this `#` has ended."""
@@ -32,12 +32,12 @@ class Verdicts:
 
     def next(self) -> Fork:
         """The innermost, leftmost among equals."""
-        if not self._ranked and len(self.new) == 1:
+        if not self.ranked and len(self.new) == 1:
             return self.new.pop()
         for fork in self.new:
-            heappush(self._ranked, (-fork.depth, fork.path(), fork))
+            heappush(self.ranked, (-fork.depth, fork.path(), fork))
         self.new.clear()
-        return heappop(self._ranked)[2]
+        return heappop(self.ranked)[2]
 
 
 def is_void(fork: Fork) -> bool:
