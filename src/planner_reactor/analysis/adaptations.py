@@ -81,7 +81,10 @@ class Verifier:
         alike = shape(around, new, surgery)
         if alike in self.right:
             return _verdict(RIGHT, bound, None, surgery, states=0)
-        before = [r.reaction for r in sorted((*around.inside, *around.outside, *around.idle), key=standing.came)]
+        before = []
+        for known in sorted((*around.inside, *around.outside, *around.idle), key=standing.came):
+            before.append(known.reaction)  # read now, if it was not
+            yield
         if len(around.inside) + len(new) > FEW and surgery.held:
             coming = [r.reaction for r in new if r.situation in surgery.held]
             verdict = yield from self._one_by_one(before, coming, surgery, bound)

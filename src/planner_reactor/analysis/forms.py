@@ -18,7 +18,8 @@ from planner_reactor.rs.reactions import REACTION, Reaction, reaction_of
 from planner_reactor.rs.terms import Symbol, Text, calls
 
 CLAUSE = re.compile(rf"\s*{REACTION}\[([0-9]+)\] = (.*\S)\s*", re.ASCII)
-LIST = re.compile(r"\[[\w ,.+*-]*\]|<[\w ,]*>", re.ASCII)
+LIST = re.compile(r"\[[\0\w ,.+*-]*\]|<[\0\w ,]*>", re.ASCII)
+"""A list of the plain kind, in which NUL stands for a name."""
 NAME = re.compile(r"(?<![\w.])[^\W\d]\w*", re.ASCII)
 RESERVED = frozenset({"if", "then", "else"})
 SPEAKS = frozenset({"SIT", "ASSERT", "REASSERT", "SUCCEED", "FAIL"})
@@ -66,7 +67,8 @@ class Forms:
     """The forms that came up."""
 
     def __init__(self) -> None:
-        self._forms: dict[str, tuple[Form, bool]] = {}
+        self._forms: dict[object, tuple[Form, bool]] = {}
+        self._layouts: dict[tuple[str, ...], tuple[bool, ...] | None] = {}
         self._others = 0
 
     def read(self, definitions: str, *, file: str = "<text>") -> list[Known]:
@@ -90,22 +92,25 @@ class Forms:
 
     def _plain(self, label: int, body: str, text: str) -> Known | None:
         """The reaction of one line, if it is a definition of its own in which every list is plain."""
-        if '"' in body or "//" in body:
+        if '"' in body or "//" in body or "\0" in body or "\1" in body:
             return None
-        numbers: dict[str, str] = {}
-
-        def numbered(name: re.Match[str]) -> str:
-            return numbers.setdefault(name[0], f"n{len(numbers)}")
-
-        def listed(found: re.Match[str]) -> str:
-            return NAME.sub(numbered, found[0])
-
-        lettered, lists = LIST.subn(listed, body)
-        if lists != body.count("[") + body.count("<") or not RESERVED.isdisjoint(numbers):
+        between = tuple(NAME.split(body))
+        if between not in self._layouts:
+            self._layouts[between] = _listed(between)
+        listed = self._layouts[between]
+        if listed is None:
             return None
-        form = self._forms.get(lettered)
+        numbers: dict[str, int] = {}
+        words = [
+            numbers.setdefault(word, len(numbers)) if is_listed else word
+            for word, is_listed in zip(NAME.findall(body), listed, strict=True)
+        ]
+        if not RESERVED.isdisjoint(numbers):
+            return None
+        key = between, tuple(words)
+        form = self._forms.get(key)
         if form is None:
-            form = self._forms[lettered] = self._new(lettered, tuple(numbers.values()))
+            form = self._forms[key] = self._new(_lettered(between, words), tuple([f"n{n}" for n in numbers.values()]))
         return Known(label, form[0], tuple(numbers), text, None) if form[1] else None
 
     def _new(self, lettered: str, names: tuple[str, ...]) -> tuple[Form, bool]:
@@ -114,6 +119,20 @@ class Forms:
             return Form(len(self._forms), _parsed(f"{REACTION}[0] = {lettered}"), names), True
         except RSError:  # the whole text is parsed instead, which says what is wrong in its own words
             return Form(len(self._forms), _parsed(f"{REACTION}[0] = STOP"), ()), False
+
+
+def _listed(between: Sequence[str]) -> tuple[bool, ...] | None:
+    """Which of the names with this `between` them stand in lists; None if not every list is plain."""
+    marked, lists = LIST.subn(lambda found: found[0].replace("\0", "\1"), "\0".join(between))
+    if lists != marked.count("[") + marked.count("<"):
+        return None
+    return tuple([sign == "\1" for sign in marked if sign in "\0\1"])
+
+
+def _lettered(between: Sequence[str], words: Sequence[str | int]) -> str:
+    """The text with the names of lists as `n0`, `n1`, …"""
+    texts = [word if isinstance(word, str) else f"n{word}" for word in words]
+    return "".join([part for pair in zip(between, [*texts, ""], strict=True) for part in pair])
 
 
 def _situations(reaction: Reaction) -> Iterator[str]:

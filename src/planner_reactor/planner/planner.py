@@ -225,8 +225,6 @@ class Planner:
 
         None if there is nothing to do until something is perceived.
         """
-        if self._gate is not None:
-            self._gate.prepare()
         held = self._gate.held if self._gate is not None else None
         if self._standing.busy:
             return self._standing.step({adaptation.id for adaptation in held.adaptations} if held else ())

@@ -107,7 +107,7 @@ def _holds(assumptions: Iterable[Atom], relaxed: frozenset[str]) -> bool:
 
 
 def _cost(theory: Theory, rule: Rule, bounds: _Bounds) -> int:
-    return sum(max(bounds[c.atom.predicate] for c in group) for group in theory.groups(rule))
+    return sum(count * max([bounds[predicate] for predicate in group]) for group, count in theory.alike_groups(rule))
 
 
 def _lower(bounds: _Bounds, predicate: str, cost: int) -> bool:

@@ -13,9 +13,8 @@ from typing import TypeAlias
 
 from planner_reactor.logic.allen import NAMED
 from planner_reactor.logic.domain import ActionSchema
-from planner_reactor.logic.formulas import variables
 from planner_reactor.planner.founding import is_founded
-from planner_reactor.planner.plan import BEFORE, CONTAINS, END, WHOLE, Plan, Result, Unnamed
+from planner_reactor.planner.plan import BEFORE, CONTAINS, END, WHOLE, Plan, Result, Step, Unnamed
 from planner_reactor.planner.problem import Consulted, Goal, Problem
 from planner_reactor.planner.reach import NEVER, Reach
 from planner_reactor.planner.repetition import Part, part_of, pattern, repeat
@@ -49,6 +48,7 @@ class Search:
         self._threats = Threats(problem, plan)
         self._reach = Reach(problem, consulted)
         self._cheapest = NEVER  # of what was found too dear
+        self._there: tuple[int, Step | None, frozenset[str]] = 0, None, frozenset()
 
     def solve(self) -> Work[Plan | None]:
         """The plan, or None if there is none (or none was found within `NODES` choices)."""
@@ -207,7 +207,8 @@ class Search:
                 if _is_nameless(argument):
                     return False
                 if isinstance(argument, Result) and argument.step >= plan.first:
-                    order = CONTAINS if plan.step(argument.step).schema.process else BEFORE  # a port, or what is returned
+                    made = plan.step(argument.step).schema
+                    order = CONTAINS if made.process else BEFORE  # a port, or what is returned
                     known = plan.network.relation(argument.step, step.number)
                     if known & ~order and not plan.order(argument.step, step.number, order):
                         return False
@@ -219,18 +220,30 @@ class Search:
 
     def _not_there(self, goals: Iterable[Goal]) -> list[str]:
         """The predicates of the goals, each once, that are no effect of a step in the plan."""
-        effects = self.problem.theory.effects
-        there = {predicate for step in self.plan.steps for predicate in effects[step.schema.name]}
+        there = self._brought_about()
         wanted = dict.fromkeys(goal.atom.predicate for goal in goals)
         return [predicate for predicate in wanted if predicate not in there]
+
+    def _brought_about(self) -> frozenset[str]:
+        """The predicates of the effects of the steps in the plan; only what is new since the last time is looked at."""
+        steps, (count, last, there) = self.plan.steps, self._there
+        if len(steps) == count and (not count or steps[-1] is last):
+            return there
+        if len(steps) < count or (count and steps[count - 1] is not last):  # a step is there once: all before it, too
+            count, there = 0, frozenset()
+        effects = self.problem.theory.effects
+        there = there.union(*[effects[step.schema.name] for step in steps[count:]])
+        self._there = len(steps), steps[-1] if steps else None, there
+        return there
 
     def _groups(self, goals: list[Goal]) -> tuple[list[list[Goal]], list[Goal]]:
         """The goals with open variables in groups that share none, and those without open variables."""
         groups: dict[int, list[Goal]] = {}  # by the number of the first goal, in order
         owner: dict[int, int] = {}  # variable → its group
         others = []
+        walk = self.plan.bindings.walk
         for n, goal in enumerate(goals):
-            own = list(variables((self.plan.bindings.ground(goal.atom),)))
+            own = [term for argument in goal.atom.arguments if type(term := walk(argument)) is int]
             if not own:
                 others.append(goal)
                 continue

@@ -10,14 +10,13 @@ from collections.abc import Mapping
 from functools import lru_cache
 
 import msgspec
-from msgspec.structs import replace
 
 from planner_reactor.logic.formulas import Atom, Numeral, Term
 from planner_reactor.planner.beliefs import all_in_doubt, some_in_doubt
 from planner_reactor.planner.structure import Action, Tree, first_action, renamed
 
 
-class Situation(msgspec.Struct, frozen=True):
+class Situation(msgspec.Struct, frozen=True, cache_hash=True):
     """An abstract action as a situation: constants are part of it, None stands for what it is asserted
     with.
     """
@@ -30,7 +29,7 @@ class Situation(msgspec.Struct, frozen=True):
         return Situation(self.schema, tuple([a if a is None else constants.get(a, a) for a in self.arguments]))
 
 
-class Context(msgspec.Struct, frozen=True):
+class Context(msgspec.Struct, frozen=True, cache_hash=True):
     """What a situation may count on, whoever asserts it.
 
     `granted` tells for each executability condition whether it lasts while the situation does. `replayed`
@@ -129,16 +128,19 @@ class Refinement(msgspec.Struct, frozen=True):
     def renamed(self, constants: dict[Term, Term]) -> Refinement:
         """The same refinement for constants that the domain does not tell apart."""
         assert not self.exchanged
-        return replace(
-            self,
-            situation=self.situation.renamed(constants),
-            children=tuple([child.renamed(constants) for child in self.children]),
-            required=_renamed_names(self.required, constants),
-            presumed=_renamed_names(self.presumed, constants),
-            missing=_renamed_names(self.missing, constants),
-            in_use=_renamed_names(self.in_use, constants),
-            asked=tuple([Atom(a.predicate, tuple([constants.get(t, t) for t in a.arguments])) for a in self.asked]),
-            exchanged=constants,
+        return Refinement(
+            self.situation.renamed(constants),
+            self.composition,
+            tuple([child.renamed(constants) for child in self.children]),
+            _renamed_names(self.required, constants),
+            _renamed_names(self.presumed, constants),
+            _renamed_names(self.missing, constants),
+            tuple([Atom(a.predicate, tuple([constants.get(t, t) for t in a.arguments])) for a in self.asked]),
+            self.blocked,
+            self.warnings,
+            self.gave_up,
+            _renamed_names(self.in_use, constants),
+            constants,
         )
 
 

@@ -227,10 +227,12 @@ class _Order:
             inner |= self._inside[n]
         blocks = []
         for n in numbers:
-            beside = [m for m in numbers if self._lasts_as_long(n, m)] if inner >> n & 1 else [n]
-            outside = sum(1 << m for m in numbers if self._inside[m] >> n & 1)
+            beside, outside = [n], 0
+            if inner >> n & 1:
+                beside = [m for m in numbers if self._lasts_as_long(n, m)]
+                outside = _bits([m for m in numbers if self._inside[m] >> n & 1])
             if beside[0] == n and outside & ~_bits(beside) == 0:
-                inside = [m for m in numbers if self._inside[n] >> m & 1 and m not in beside]
+                inside = [m for m in _numbers(self._inside[n] & present) if m not in beside]
                 tree: Tree = Run(self._steps[n])
                 if inside or len(beside) > 1:
                     tree = _meanwhile([self._steps[m] for m in beside], self._composed(self._blocks(inside)))

@@ -8,7 +8,7 @@ one serves for another.
 
 from __future__ import annotations
 
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Callable, Iterable, Iterator
 
 import msgspec
@@ -49,7 +49,7 @@ class Theory:
         """For each abstract action the others that do all that it does: they stand beside it, never below."""
         self.contributors = _contributors(domain)
         self.bounds: dict[object, dict[str, int]] = {}
-        self._groups: dict[int, tuple[tuple[Condition, ...], ...]] = {}
+        self._alike_groups: dict[int, tuple[tuple[frozenset[str], int], ...]] = {}
         self._bodies = {id(r): frozenset(c.atom.predicate for c in r.body) for r in domain.rules}
         self.alike = _alike(domain, self.groups)
         self.missing: dict[tuple[str, frozenset[str]], frozenset[str]] = {}
@@ -112,12 +112,17 @@ class Theory:
         """The predicates of a rule's conditions."""
         return self._bodies[id(rule)]
 
+    def alike_groups(self, rule: Rule) -> tuple[tuple[frozenset[str], int], ...]:
+        """The predicates of each group of a rule's conditions, and how many groups have the same."""
+        found = self._alike_groups.get(id(rule))
+        if found is None:
+            count = Counter(frozenset(c.atom.predicate for c in group) for group in self.groups(rule))
+            found = self._alike_groups[id(rule)] = tuple(count.items())
+        return found
+
     def groups(self, rule: Rule) -> tuple[tuple[Condition, ...], ...]:
         """The conditions of a rule in groups that share no variable but those of its head, in order."""
-        found = self._groups.get(id(rule))
-        if found is None:
-            found = self._groups[id(rule)] = _grouped(rule.body, frozenset(variables((rule.head,))))
-        return found
+        return _grouped(rule.body, frozenset(variables((rule.head,))))
 
 
 def _grouped(body: tuple[Condition, ...], bound: frozenset[int]) -> tuple[tuple[Condition, ...], ...]:

@@ -43,6 +43,9 @@ PARTS = tuple(
 STATES = 4
 """So many states are looked at in one step of the planner: about two milliseconds."""
 
+LONG = 2_000
+"""To write so many characters, and to look at them, are steps of their own."""
+
 Verdicts: TypeAlias = list[tuple[Adaptation, Verdict]]
 
 
@@ -85,10 +88,12 @@ class Gate:
 
         return Standing()
 
-    def prepare(self) -> None:
-        """Load a part of what looking needs, once something is out, so that no step has to load all of it."""
-        if self._known and (name := next(self._parts, "")):
+    def _loading(self) -> Looking[None]:
+        """Load what looking needs, one module in a step."""
+        for name in self._parts:
             import_module(name)
+            for _ in range(STATES):
+                yield
 
     def examine(self, adaptation: Adaptation) -> Verdict:
         """May it be sent? If so it is taken to be under way."""
@@ -103,6 +108,7 @@ class Gate:
             self._known |= named
             self._under_way[adaptation.id] = adaptation, ()
             return NOTHING_WAS
+        yield from self._loading()
         yield from self._reading()
         try:
             new = self._reactions(adaptation)
@@ -140,6 +146,8 @@ class Gate:
     def look(self, step: Step) -> tuple[Step, Verdicts] | None:
         """Look at what a step issues: the step with the verdicts, or None if it is held, as that takes longer."""
         self._held = step, self._all_of(step.adaptations)
+        if sum(len(adaptation.definitions) for adaptation in step.adaptations) > LONG:
+            return None
         return self.look_on()
 
     @property
