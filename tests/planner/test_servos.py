@@ -20,7 +20,7 @@ from planner_reactor.workcell.environments.exploits import wanted
 from planner_reactor.workcell.environments.worlds import MEASURES, TIMING
 from tests.planner.driving import Book, perception, planner_without, settle, texts
 
-LOOK = r"\(IN\[s1\]<v\d> :; \(STREAM\[(\w+), v\d\] # Delay\[0\.05\]\) \| "
+LOOK = r"\(IN\[s1\]<v\d> :; \(OUT\[(\w+), v\d\] # Delay\[0\.05\]\) \| "
 FOLLOW = r"IN\[(\w+)\]<v\d> :; OUT\[m1, v\d\]\)"
 APPROACH = r"\(\(IN\[j\]<v\d> : IN\[(\w+)\]<v\d>\) : OUT\[r, v\d - v\d\]\) :; Delay\[0\.29\]\)"
 ACQUIRE = r"\(\(OUT\[g, 1\] : IN\[h\]<(?P<h>v\d)> : Equal\[(?P=h), 1\] : Delay\[0\.5\]\) # \(Delay\[1\.0\] : ABORT\)\)"

@@ -50,4 +50,10 @@ EXPERIMENTS: dict[str, Experiment] = {
                         _of("ideal_reactors")),
     "assumptions": Experiment("are the nine assumptions real? reactors built on each and without it, in worlds with it "
                               "and without", _of("assumptions")),
+    "reactors": Experiment("every reactor that can be built on the nine assumptions, run where they hold and where not",
+                           _of("every_reactor")),
+    "tracking": Experiment("TRACK, found from a model: an object kept in view, until it is not dense enough",
+                           _of("tracking")),
+    "acquiring": Experiment("GuardedMove and GuardedWait, found from models: a thousand runs each, and changing between",
+                            _of("acquiring")),
 }

@@ -12,6 +12,7 @@ from functools import lru_cache
 import msgspec
 
 from planner_reactor.experiments.loop import Loop
+from planner_reactor.link.messages import Perception
 from planner_reactor.logic.domain import Domain
 from planner_reactor.planner.planner import Planner
 from planner_reactor.planner.servos import Model, exploiting
@@ -24,7 +25,8 @@ from planner_reactor.workcell.environments.worlds import MEASURES, TIMING, Surro
 class Scene(msgspec.Struct, frozen=True, kw_only=True):
     """One run: the world (`tracking`, `reaching`, `line`), how it begins, and what is different in it.
 
-    `strikes`: (seconds, whether the belt runs from then on). `target`: objects to take; `until`: seconds at most.
+    `strikes`: (seconds, whether the belt runs from then on). `target`: objects to take; `until`: seconds at most;
+    `without`: assumptions that the planner does not begin with.
     """
 
     kind: str
@@ -34,7 +36,7 @@ class Scene(msgspec.Struct, frozen=True, kw_only=True):
     strikes: Sequence[tuple[float, bool]] = ()
     target: int = 0
     until: float = 60.0
-    relax: tuple[str, ...] = ()
+    without: tuple[str, ...] = ()
 
 
 class Played(msgspec.Struct, frozen=True):
@@ -47,7 +49,9 @@ class Played(msgspec.Struct, frozen=True):
 
 def play(scene: Scene, *, watch: Callable[[Loop], object] = lambda loop: None) -> Played:
     """Do it: a null reactor, a planner, and the world."""
-    planner = Planner(domain_for(scene.kind), relax=scene.relax)
+    planner = Planner(domain_for(scene.kind, tuple(sorted(scene.constants.items()))), relax=())
+    for number, name in enumerate(scene.without, 1):
+        planner.perceive(Perception(number=number, time=0.0, kind="assumption_failure", subject=name))
     make = agent(scene.kind, scene.starts, scene.constants, target=scene.target)
     loop = Loop(planner, make, seed=scene.seed)
     place = loop.host.world
@@ -59,22 +63,24 @@ def play(scene: Scene, *, watch: Callable[[Loop], object] = lambda loop: None) -
     return Played(scene, loop, place.surroundings)
 
 
-@lru_cache
-def domain_for(kind: str) -> Domain:
+@lru_cache(256)
+def domain_for(kind: str, constants: tuple[tuple[str, float], ...] = ()) -> Domain:
     """What a planner is given in a world of this kind: a goal, and what follows from the models."""
+    given = {**TIMING, **MEASURES, **dict(constants)}
     if kind == "tracking":
-        return exploiting(wanted("tracking"), [_model("tracking", "TEM")], file="tracking.itl")
-    reach = _model("guarded_move", "GEM", JOINT)
-    models = [_model("belt", "BEM", JOINT, belt=True), reach] if kind == "line" else [reach]
+        return exploiting(wanted("tracking"), [_model("tracking", "TEM", given)], file="tracking.itl")
+    reach = _model("guarded_move", "GEM", given)
+    models = [_model("belt", "BEM", given), reach] if kind == "line" else [reach]
     return exploiting(wanted("acquiring"), models, definitions=ACQUIRE, file="acquiring.itl")
 
 
-def _model(name: str, environment: str, *more: str, belt: bool = False) -> Model:
+def _model(name: str, environment: str, given: Mapping[str, float]) -> Model:
+    belt = name == "belt"
     return Model(
-        text="\n".join((model(name), *more)),
+        text=model(name) if name == "tracking" else f"{model(name)}\n{JOINT}",
         environment=environment,
         signatures=host.signatures,
-        given={**TIMING, **MEASURES},
+        given=given,
         assuming=ASSUMING if belt else {},
         watching=WATCHING if belt else {},
         patience_ms=30_000,

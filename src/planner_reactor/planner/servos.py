@@ -1,8 +1,8 @@
 """Actions derived from environment models, in a domain for the planner (X §5: from dynamics to reactions).
 
-`exploiting` adds to the text of a domain the schemas that follow from models of the environment. What a model takes for
-granted (a condition of its dynamics, such as p < nu) is an *assumption inside the model*: `assuming` names it, and with
-that it is relaxed, reinstated and monitored as any other (R §6). What follows from several models is there once.
+`exploiting` adds to the text of a domain the schemas that follow from models of the environment. What a model takes
+for granted (a condition of its dynamics, such as p < nu) is an *assumption inside the model*: `assuming` names it, and
+with that relaxed, reinstated and monitored as any other (R §6). What follows from several models is there once.
 
 Texts are paced by the interface's own timing, so that a loop through the environment is stable: what is sensed is handed
 on for as long as its sensor holds it and no longer, and what moves by increments waits until the agent has sensed what
@@ -144,7 +144,7 @@ def _paced(action: DerivedAction, timing: Mapping[str, Timing], model: Model) ->
             body = _watched(action, model) or body
         case "report", Loop(condition, Call("OUT", arguments)):
             held = Call("Delay", (Number(timing[action.ports[0]].holds),))
-            body = Loop(condition, Disable((Call("STREAM", arguments), held)))
+            body = Loop(condition, Disable((Call("OUT", arguments), held)))
         case (("approach" | "retreat"), Loop(condition, move)):
             body = Loop(cond(condition, move), Call("Delay", (Number(_settling(action, condition, timing)),)))
     head = f"[{', '.join((*action.inputs, *action.outputs))}]" if action.inputs or action.outputs else ""
