@@ -6,7 +6,7 @@ BIN    := $(VENV)/bin
 PIP    := $(BIN)/python -m pip --disable-pip-version-check install --quiet --constraint constraints.txt
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test check figures bench docs conformance laws mutants fuzz crashes damage soak nets chaos schedules clean
+.PHONY: help demo test check figures bench docs conformance laws mutants fuzz crashes damage soak swaps nets chaos defects schedules clean
 
 help:  ## list the targets
 	@grep -hE '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## */  make \1\t/' | expand -t 22
@@ -49,6 +49,12 @@ crashes: $(VENV)/dev.done  ## crash, power loss and cut link at every step of ad
 damage: $(VENV)/dev.done  ## a journal of a thousand adaptations, cut at every byte and with every bit flipped
 	nice -n 10 $(BIN)/python -m tests.reactor.damage
 
+soak: $(VENV)/dev.done  ## a million situations: no byte, thread or file of one stays behind
+	nice -n 10 $(BIN)/python -m tests.soak
+
+swaps: $(VENV)/dev.done  ## a million swaps of segments in a running reactor of 10,000 processes; goes on where it stopped
+	nice -n 10 $(BIN)/python benchmarks/bench_swap.py
+
 nets: $(VENV)/dev.done  ## a thousand random nets, each also searched by SPIN (half an hour; needs spin and gcc)
 	SPIN_NETS=1000 $(BIN)/python -m pytest -q -s tests/analysis/test_networks.py -k each_random_net
 
@@ -57,6 +63,9 @@ chaos: $(VENV)/dev.done  ## ten minutes of faults on two processes, inside adapt
 
 schedules: $(VENV)/dev.done  ## a million random schedules of failures and returns on the planner; goes on where it stopped
 	nice -n 10 $(BIN)/python -m tests.schedules
+
+defects: $(VENV)/dev.done  ## every defect meets chaos until a law catches it; the table of docs/defects.md; resumes
+	nice -n 10 $(BIN)/python -m tests.defects --workers 2
 
 clean:  ## forget what was made
 	rm -rf out $(VENV) .pytest_cache .mypy_cache .ruff_cache .hypothesis .import_linter_cache

@@ -144,11 +144,11 @@ def swapping(peers: dict[str, ModuleType]) -> list[Row]:
     """Replacing a segment of a running reactor; a peer replaces a subtree of a running tree of as many nodes."""
     progress("swaps")
     theirs = {peer: module.swaps() for peer, module in peers.items() if hasattr(module, "swaps")}
-    found = bench_swap.swaps(2_000)
+    found = bench_swap.summed([bench_swap.swaps(2_000)])
     lost = sum(value for name, value in found.items() if name in bench_swap.COUNTED)
     return [
-        limited(f"swap of a segment, {found['processes']:,} processes, {percentile}", "µs", found["cpu_us"][i], goal,
-                {peer: latencies[i] for peer, latencies in theirs.items()})
+        limited(f"swap of a segment, {found['processes']:,} processes, {percentile}", "µs",
+                found["us"]["swap"][percentile], goal, {peer: latencies[i] for peer, latencies in theirs.items()})
         for i, (percentile, goal) in enumerate((("p50", None), ("p99", 1000.0)))
     ] + [limited("lost, restarted or left over in 2,000 swaps", "", lost, 0.0, {})]  # fmt: skip
 

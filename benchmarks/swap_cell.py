@@ -46,7 +46,7 @@ class SwapCell:
         self.lost = 0  # perceptions that are missing among the numbers
         self.outcomes: dict[str, int] = {}
         for segment in self.segments:
-            self.reactor.receive(self.prepared(segment))
+            self.reactor.receive(self.adaptation(segment))
             self.scheduler.run(self.scheduler.now)
 
     def _host(self) -> Host:
@@ -83,7 +83,7 @@ class SwapCell:
         segment.unanswered.add(segment.events)
         segment.signal.fire()
 
-    def prepared(self, segment: Segment, *, swapping: bool = False) -> Adaptation:
+    def adaptation(self, segment: Segment, *, swapping: bool = False) -> Adaptation:
         """The adaptation that replaces the segment as it stands; `swapping`: the new one swaps others when it acts."""
         top, below, i = self._label + 1, self._label + 2, segment.index
         self._label += 2
@@ -105,6 +105,7 @@ class SwapCell:
             changes=tuple(Change(situation=s, base=segment.version, fresh=fresh) for s in (f"s{i}", f"t{i}")),
             kills=() if fresh else segment.labels,
             adds=adds,
+            deadline=60.0,  # on the wall clock the machine may be held up
         )
         segment.labels = (top, below)
         segment.version += 1
@@ -113,7 +114,7 @@ class SwapCell:
 
     def swap(self, segment: Segment, *, swapping: bool = False) -> None:
         if f"s{segment.index}" not in self.reactor.transactions.pending_situations:
-            self.reactor.receive(self.prepared(segment, swapping=swapping))
+            self.reactor.receive(self.adaptation(segment, swapping=swapping))
 
     def take(self) -> None:
         """Read the perceptions, as a planner does."""
