@@ -74,3 +74,19 @@ def test_wrong_input_is_refused(call: Call, arguments: tuple[str, ...], said: st
     result = call(*arguments)
     assert result.status == 2
     assert said in result.err
+
+
+def test_a_reaction_is_scheduled_on_an_executer_of_known_cost(call: Call, tmp_path: Path) -> None:
+    text = Path(TRACKING).read_text(encoding="utf-8") + "TRACK = IN[s1]<v> :; OUT[m1, v]\n"
+    (tmp_path / "track.rsl").write_text(text, encoding="utf-8")
+    asked = ["dynamics", str(tmp_path / "track.rsl"), "TEM", *HOST, "--reaction", "TRACK", "--json"]
+    known = ("t0=1", "ts0=0.1", "ts1=0.05", "gl=0.01", "tl=0.005", "gm=0.03", "tm=0.02", "eps=0.9")
+    settings = [part for s in known for part in ("--set", s)]
+    quick = call(*asked, *settings, "--cost", "0.00001")
+    assert (quick.status, quick.object["schedule"]["fits"]) == (0, True)
+    assert quick.object["schedule"]["load"] == pytest.approx(3 * 1e-5 / 0.05)
+    slow = call(*asked, *settings, "--cost", "0.02")
+    assert (slow.status, slow.object["schedule"]["offender"]) == (1, "TRACK takes 120.00% of the time")
+    refused = call(*asked, "--cost", "0.02")
+    assert (refused.status, "give them with --set" in refused.err) == (2, True)
+    assert call(*asked, "--cost", "cheap").status == 2

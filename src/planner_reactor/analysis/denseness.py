@@ -19,6 +19,8 @@ are upper bounds (Term) keep every claim; only AT then pays for what `::` no lon
 what the delay may be longer than the offer, and old and new may be offered together for `overlap` seconds. A port that
 is offered once per round until somebody takes it (OUT) is as silent as its reader is busy.
 
+Where a component waits within its round for an answer to what it asks another, `hiding` looks at every state instead.
+
 A silence is what a reader may have to wait; the pause of a STREAM (rs.prelude.QUANTUM) after each value that it hands
 over comes on top of it. Durations may be names.
 """
@@ -34,8 +36,9 @@ from msgspec.structs import replace
 
 from planner_reactor.analysis.conditions import Condition
 from planner_reactor.analysis.durations import greatest, least
+from planner_reactor.analysis.hiding import silence
 from planner_reactor.analysis.offering import Local, Refusal, local
-from planner_reactor.analysis.rounds import Irreducible, Rounds, rounds_of
+from planner_reactor.analysis.rounds import Irreducible, Phase, Rounds, rounds_of
 from planner_reactor.analysis.subnets import network, traffic
 from planner_reactor.errors import InputError, nearest
 from planner_reactor.rs.configurations import World
@@ -43,9 +46,10 @@ from planner_reactor.rs.given import process_with_values, with_values
 from planner_reactor.rs.linking import Linked
 from planner_reactor.rs.open_names import open_names
 from planner_reactor.rs.parser import parse_process
+from planner_reactor.rs.prelude import QUANTUM
 from planner_reactor.rs.printer import show
-from planner_reactor.rs.terms import Call, Process, Program, Schema, Value
-from planner_reactor.rs.unknowns import Unknown, split
+from planner_reactor.rs.terms import Call, Par, Process, Program, Schema, Value
+from planner_reactor.rs.unknowns import Undecided, Unknown, split
 from planner_reactor.rs.vocabulary import BUILT_IN, Signature
 
 Supplied: TypeAlias = Mapping[str, tuple[Any, Any]]
@@ -98,11 +102,15 @@ Trend: TypeAlias = Literal["increasing", "decreasing", "constant", "either", "op
 
 
 class Failure(msgspec.Struct, frozen=True):
-    """The port is not dense, or nobody can tell: `process` is to blame, `why` says what would be expected."""
+    """The port is not dense, or nobody can tell: `process` is to blame, `why` says what would be expected.
+
+    `undecided`: its rounds alone do not tell.
+    """
 
     port: Value
     process: str
     why: str
+    undecided: bool = False
 
     def __str__(self) -> str:
         return f"{self.port} is not dense: {self.process} {self.why}"
@@ -118,7 +126,33 @@ def dense(
     port that nobody uses.
     """
     world = program if isinstance(program, World) else opened(program, given=given)
-    return Netlist(asked(process, world, given or {}), world).dense(port, supplied or {})
+    nets = Netlist(asked(process, world, given or {}), world)
+    found = nets.dense(port, supplied or {})
+    return _looked_at(nets, found, supplied or {}) if isinstance(found, Failure) and found.undecided else found
+
+
+def _looked_at(nets: Netlist, failure: Failure, supplied: Supplied) -> Denseness | Failure:
+    """What rounds cannot tell is told by all states, if all delays are numbers."""
+    network = Par(nets.components) if len(nets.components) > 1 else nets.components[0]
+    open_inputs = [p for p in nets.ports if nets.readers(p) and not nets.writers(p)]
+    try:
+        waited = silence(network, nets.world, str(failure.port), open_inputs)
+    except (Irreducible, Undecided, TypeError):
+        return failure
+    given = [supplied.get(p, (inf, inf)) for p in open_inputs]
+    delay = waited - QUANTUM + sum(pair[0] for pair in given)
+    if delay == inf:
+        return failure
+    held = [s.high for n in nets.writers(failure.port) for s in _offers(nets, n, failure.port)]
+    resolution = greatest(*held, *(pair[1] for pair in given)) if held else inf
+    return Denseness(failure.port, failure.process, "every state", max(delay, 0), resolution, inputs=tuple(open_inputs))
+
+
+def _offers(nets: Netlist, number: int, port: Value) -> Iterator[Phase]:
+    found = nets.rounds(number)
+    for rounds in () if isinstance(found, Irreducible) else found:
+        for way in rounds.ways:
+            yield from (phase for phase in way.phases if any(p == port for p, _ in phase.offers))
 
 
 def asked(process: Process | str, world: World, given: Mapping[str, float]) -> Process:
@@ -189,7 +223,7 @@ class Netlist:
         found = self.rounds(writers[0])
         if isinstance(found, Irreducible):
             why = f"has rounds that cannot be told: {found.why}: {show(found.process)}"
-            return Failure(port, self.name(writers[0]), why)
+            return Failure(port, self.name(writers[0]), why, undecided=True)
         answer = local(port, found)
         return Failure(port, self.name(writers[0]), answer.why) if isinstance(answer, Refusal) else answer
 
@@ -205,7 +239,8 @@ class Netlist:
         if isinstance(own, Failure):
             return own
         if port in seen:
-            return Failure(port, self.name(self.writers(port)[0]), "waits for itself, through what it feeds")
+            why = "waits for itself, through what it feeds"
+            return Failure(port, self.name(self.writers(port)[0]), why, undecided=True)
         return self._composed(port, own, supplied, (*seen, port))
 
     def _composed(self, port: Value, own: Local, supplied: Supplied, seen: tuple[Value, ...]) -> Denseness | Failure:
@@ -219,7 +254,7 @@ class Netlist:
             for taken, got in takes:
                 found = self.dense(str(taken), supplied, seen)
                 if isinstance(found, Failure):
-                    return replace(found, port=port) if found.port == port else found
+                    return replace(found, port=port) if found.undecided else found
                 waits.append(found.delay)
                 ages.append(found.age)
                 held.append(found.resolution)

@@ -3,20 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from math import inf
 from pathlib import Path
 from typing import Any
 
 from planner_reactor.analysis.conditions import text
 from planner_reactor.analysis.denseness import Denseness, Failure, Netlist
 from planner_reactor.analysis.interface import Connector
+from planner_reactor.analysis.scheduling import Demand, schedule, steps_of
 from planner_reactor.analysis.timing import Check, Stability, stability
+from planner_reactor.calls.costing import cost_per_step
 from planner_reactor.calls.evolving import Model, model
 from planner_reactor.calls.hosts import HostSource
 from planner_reactor.calls.inputs import names_in, read_text, unknown
 from planner_reactor.calls.processes import called
+from planner_reactor.errors import InputError
 from planner_reactor.planner.dynamics import Dynamics, derive
 from planner_reactor.planner.exploiting_text import DerivedAction
 from planner_reactor.rs.parser import read_program
+from planner_reactor.rs.prelude import QUANTUM
 from planner_reactor.rs.printer import show
 from planner_reactor.rs.terms import Call, Parameter, Symbol
 from planner_reactor.rs.unknowns import Symbolic
@@ -31,15 +36,18 @@ def dynamics(
     interface: str | Iterable[str] | None = None,
     goal: str | Iterable[str] = (),
     reaction: str | Iterable[str] = (),
+    cost: float | str | None = None,
 ) -> dict[str, Any]:
     """What an agent can exploit in the environment `process` of a file `*.rsl`.
 
     `interface`: its sensory and motor processes (default: found from their ports); `goal`: ports of the agent's side,
     what does not matter for them is left out; `reaction`: processes of the file whose timing is checked against the
-    environment; else as for `evolve`. Returns `dynamics` (the limit set: condition, term, kind, and the actions that
-    come of each entry, or why none does), `schemas` (text), `actions`, `interface`, `denseness` (of every port), and
-    `timing` with `stable` and `checks`. Raises what `evolve` raises.
+    environment, and, if a step of the executer costs `cost` seconds (or `measured`), whether they fit on it; else as
+    for `evolve`. Returns `dynamics` (the limit set: condition, term, kind, and the actions that come of each entry, or
+    why none does), `schemas` (text), `actions`, `interface`, `denseness` (of every port), `timing` with `stable` and
+    `checks`, and `schedule`. Raises what `evolve` raises.
     """
+    seconds = _cost(cost)
     subject = model(file, _with_arguments(file, process), host=host, given=given)
     named = None if interface is None else [name for name in names_in(interface) if name]
     ports = [name for name in names_in(goal) if name]
@@ -54,6 +62,7 @@ def dynamics(
         "sensors": list(found.sensors),
         "denseness": [_density(port, nets.dense(port, {})) for port in nets.ports],
         "timing": _told(timing),
+        "schedule": _scheduled(subject, timing, [n for n in names_in(reaction) if n], found, seconds),
     }  # fmt: skip
 
 
@@ -109,6 +118,44 @@ def _timing(subject: Model, names: list[str], found: Dynamics) -> Stability | No
     own = [called(name) for name in names]
     processes = [*own, *dict.fromkeys(c.process for c in found.interface if c.process not in own)]
     return stability(subject.call, processes, subject.world)
+
+
+def _cost(cost: float | str | None) -> float | None:
+    if cost is None:
+        return None
+    if cost == "measured":
+        return cost_per_step()
+    try:
+        seconds = float(cost)
+    except ValueError:
+        seconds = -1.0
+    if not 0 < seconds < inf:
+        raise InputError(f"cost is {cost}, expected seconds for a step, more than 0, or measured")
+    return seconds
+
+
+def _scheduled(
+    subject: Model, timing: Stability | None, names: list[str], found: Dynamics, cost: float | None
+) -> dict[str, Any] | None:
+    """Do the reactions fit? Each may be late by what its timing leaves free, and goes round as often as it can."""
+    if cost is None or timing is None:
+        return None
+    left = [c.right - c.left for c in timing.checks if c.name in ("reads", "corrects")]
+    if any(isinstance(slack, Symbolic) for slack in left) or not left:
+        raise InputError("the delays that count are open names, give them with --set NAME=NUMBER")
+    answer = schedule([_demand(subject, name, found, min(left)) for name in names], cost)
+    return {
+        "fits": answer.fits, "load": answer.load, "response_s": answer.response, "margin": answer.margin,
+        "offender": answer.offender, "cost_s": cost, "text": str(answer),
+    }  # fmt: skip
+
+
+def _demand(subject: Model, name: str, found: Dynamics, slack: float) -> Demand:
+    """Rounds follow each other no sooner than a STREAM hands over again, and than a motor process takes again."""
+    nets = Netlist(called(name), subject.world, *dict.fromkeys(c.process for c in found.interface))
+    ports = [p for p in nets.ports if 0 in nets.writers(p)]
+    busy = [b for b in (nets.busy(p, {}) for p in ports) if not isinstance(b, Symbolic) and b != inf]
+    return Demand(name, steps_of(called(name), subject.world), float(max([QUANTUM, *busy])), slack)
 
 
 def _told(timing: Stability | None) -> dict[str, Any] | None:

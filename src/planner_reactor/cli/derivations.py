@@ -31,6 +31,10 @@ def dynamics(
     reaction: Annotated[
         str, typer.Option("--reaction", metavar="P,Q,...", help="Check the timing of these processes of the file.")
     ] = "",
+    cost: Annotated[
+        str | None,
+        typer.Option("--cost", metavar="S|measured", help="Seconds for a step of the executer: does the reaction fit?"),
+    ] = None,
     as_json: options.Json = False,
 ) -> int:
     """Derive action schemas from a model of the environment: exit status 1 if a reaction does not keep up with it."""
@@ -39,13 +43,14 @@ def dynamics(
     given = evolving.given_values(settings or ())
     with reserved_output():
         result = deriving.dynamics(
-            file, process, host=host, given=given, interface=interface, goal=goal, reaction=reaction
+            file, process, host=host, given=given, interface=interface, goal=goal, reaction=reaction, cost=cost
         )
     if as_json:
         print_json(result)
     else:
         _show(result)
-    return 0 if result["timing"] is None or result["timing"]["stable"] is not False else 1
+    late = result["timing"] is not None and result["timing"]["stable"] is False
+    return 1 if late or (result["schedule"] is not None and not result["schedule"]["fits"]) else 0
 
 
 def _show(result: dict[str, Any]) -> None:
@@ -59,3 +64,5 @@ def _show(result: dict[str, Any]) -> None:
         print()
         for line in (*result["timing"]["failures"], *(check["text"] for check in result["timing"]["checks"])):
             print(line)
+    if result["schedule"] is not None:
+        print(result["schedule"]["text"])
