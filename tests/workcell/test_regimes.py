@@ -9,7 +9,19 @@ from planner_reactor.runtime import Scheduler, VirtualClock
 from planner_reactor.workcell.disturbances import DISTURBANCES
 from planner_reactor.workcell.evidence import ASSUMPTIONS
 from planner_reactor.workcell.host import host
-from planner_reactor.workcell.regimes import BREAKING, SHORT_BELT, regime
+from planner_reactor.workcell.regimes import BREAKING, SHORT_BELT, Regime
+from planner_reactor.workcell.world import World
+
+
+def struck(*false: str, until: float = 200.0, apart: float = 1.0) -> list[tuple[str, float]]:
+    """What strikes an idle cell."""
+    scheduler = Scheduler(VirtualClock(), seed=1)
+    world = host(scheduler, kit=SHORT_BELT).world
+    assert isinstance(world, World)
+    world.start(scheduler)
+    Regime(false, apart=apart).begin(world, scheduler)
+    scheduler.run(until=until)
+    return [(record.kind, record.struck_s) for record in world.struck]
 
 
 def test_each_assumption_is_broken_by_a_fault_that_breaks_it_and_no_other() -> None:
@@ -17,24 +29,30 @@ def test_each_assumption_is_broken_by_a_fault_that_breaks_it_and_no_other() -> N
     assert all(DISTURBANCES[breaking.kind].breaks == name for name, breaking in BREAKING.items())
 
 
-@pytest.mark.parametrize("name", ASSUMPTIONS)
-def test_it_is_broken_again_and_again_up_to_the_end_by_faults_that_the_world_takes(name: str) -> None:
-    world = host(Scheduler(VirtualClock()), kit=SHORT_BELT).world
-    faults = regime([name], until=600.0)
-    assert all(world.refusal(fault.kind, fault.parameters) is None for fault in faults)  # type: ignore[union-attr]
-    lasts = [fault.parameters.get("duration_s") for fault in faults]
-    assert lasts == [600.0] or len(faults) >= 7
-    assert max(fault.at for fault in faults) < 600.0
+@pytest.mark.parametrize("name", ["AQ", "AS", "AF", "ADD"])
+def test_it_is_broken_again_and_again(name: str) -> None:
+    times = [time for _, time in struck(name)]
+    breaking = BREAKING[name]
+    assert times == [breaking.first + n * breaking.period for n in range(len(times))]
+    assert len(times) == 1 + (200.0 - breaking.first) // breaking.period
 
 
-def test_regimes_mix_by_time_and_may_be_sparser() -> None:
-    both, rare = regime(["AQ", "ADT"], until=300.0), regime(["AQ", "ADT"], until=300.0, apart=3.0)
-    assert [fault.at for fault in both] == sorted(fault.at for fault in both)
-    assert {fault.kind for fault in both} == {"bad_parts", "tray_moved"}
-    assert len(rare) < len(both) / 2
-    assert regime((), until=300.0) == ()
+def test_an_order_of_arrival_is_set_once_and_for_ever() -> None:
+    assert struck("AO") == [("arrival_order", 1.0)]
+
+
+def test_what_cannot_strike_waits_and_does_not_pile_up() -> None:
+    """No gripper closes and no tray stands in an idle cell."""
+    assert struck("AM", "ADT", "ACT", "ACP") == []
+
+
+def test_regimes_mix_and_may_be_sparser() -> None:
+    both, rare = struck("AQ", "ADD"), struck("AQ", "ADD", apart=3.0)
+    assert {kind for kind, _ in both} == {"bad_parts", "downstream_blocked"}
+    assert len(rare) < len(both)
+    assert struck() == []
 
 
 def test_an_assumption_that_there_is_not_is_refused() -> None:
     with pytest.raises(InputError, match="unknown assumption AK"):
-        regime(["AK"], until=10.0)
+        Regime(["AK"])

@@ -27,11 +27,11 @@ from planner_reactor.planner import Planner
 from planner_reactor.runtime import Host, Scheduler
 from planner_reactor.trace import Trace
 from planner_reactor.workcell import telling
-from planner_reactor.workcell.faults import FaultSchedule
 from planner_reactor.workcell.host import host
-from planner_reactor.workcell.regimes import SHORT_BELT, regime
+from planner_reactor.workcell.regimes import SHORT_BELT, Regime
+from planner_reactor.workcell.world import World
 
-TRIALS, LASTS = 30, 900.0
+TRIALS, LASTS = 20, 900.0
 """Seeds; simulated seconds of a run."""
 
 ENOUGH = 2 / 3
@@ -107,8 +107,9 @@ def running(trial: Trial) -> Loop:
     for number, name in enumerate(trial.given_up):
         planner.perceive(Perception(number=number + 1, time=0.0, kind="assumption_failure", subject=name))
     loop = Loop(planner, partial(cell, observes=trial.observes), seed=trial.seed, keep_trace=False)
-    assert loop.host.world is not None
-    FaultSchedule(regime(trial.false, until=trial.lasts, apart=trial.apart), loop.host.world, loop.scheduler)
+    world = loop.host.world
+    assert isinstance(world, World)
+    Regime(trial.false, apart=trial.apart).begin(world, loop.scheduler)
     return loop
 
 
