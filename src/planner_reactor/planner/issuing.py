@@ -309,7 +309,7 @@ class Issuer:
         adaptation = Adaptation(
             id=self.next_id,
             epoch=self.epoch,
-            definitions="".join(f"{reactions.clause(n, p)}\n" for n, p in sorted(parts.clauses.items())),
+            definitions="".join([f"{reactions.clause(n, p)}\n" for n, p in sorted(parts.clauses.items())]),
             changes=tuple(parts.changes),
             removed=tuple(parts.removed),
             kills=tuple(parts.kills),

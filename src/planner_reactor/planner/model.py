@@ -72,7 +72,7 @@ class Segment(msgspec.Struct):
     @property
     def is_open(self) -> bool:
         """Is something to be done about it, now or as soon as the adaptation under way is applied?"""
-        return (self.is_stub or self.stale) and not self.impossible
+        return (self.refinement is None or self.stale) and not self.impossible
 
 
 class Drafted(msgspec.Struct, eq=False):
@@ -137,11 +137,13 @@ class Model(msgspec.Struct, eq=False):
 
     def _forget(self, segment: Segment) -> None:
         if segment.situation in self.segments:
-            for assumption in segment.in_use:
+            if segment.refinement is None:
+                return
+            for assumption in segment.refinement.in_use:
                 self.uses[assumption] -= 1
                 if not self.uses[assumption]:
                     del self.uses[assumption]
-            for child in segment.children:
+            for child in segment.refinement.children:
                 self._calls[child.situation].pop(segment.situation, None)
 
     def callers(self, situation: Situation) -> tuple[Situation, ...]:

@@ -60,13 +60,13 @@ _OWN = re.compile(r"k|[xv]\d+")
 _NAME = re.compile(r"[A-Za-z_]\w*")
 
 
-class Names:
+class Names(dict[Situation, str]):
     """A `Lettering`: a name of its own for every situation, the action's, then its constants (`Tend`, `fern` →
     `TendFern`).
     """
 
     def __init__(self) -> None:
-        self._names: dict[Situation, str] = {}
+        super().__init__()
         self._situations: dict[str, Situation] = {}
 
     def named(self, name: str) -> Situation | None:
@@ -81,18 +81,16 @@ class Names:
         """A constant as it stands in a text."""
         return constant(term)
 
-    def __getitem__(self, situation: Situation) -> str:
-        name = self._names.get(situation)
-        if name is None:
-            parts = [str(a) for a in situation.arguments if a is not None]
-            wanted = situation.schema + "".join(part[:1].upper() + part[1:] for part in parts)
-            wanted = name = re.sub(r"\W", "_", wanted)
-            count = 1
-            while name in self._situations:
-                count += 1
-                name = f"{wanted}_{count}"
-            self._situations[name] = situation
-            self._names[situation] = name
+    def __missing__(self, situation: Situation) -> str:
+        parts = [str(a) for a in situation.arguments if a is not None]
+        wanted = situation.schema + "".join(part[:1].upper() + part[1:] for part in parts)
+        wanted = name = re.sub(r"\W", "_", wanted)
+        count = 1
+        while name in self._situations:
+            count += 1
+            name = f"{wanted}_{count}"
+        self._situations[name] = situation
+        self[situation] = name
         return name
 
 

@@ -186,7 +186,7 @@ class Reducer:
         left = UNITS
         while left > 0:
             situation = draft.waiting[0] if draft.waiting else draft.segment.situation
-            if situation in draft.refinements:
+            if situation in draft.drafted.refinements:
                 draft.more = self.sizing.more(draft, self.model, self.theory.domain)
                 if draft.more is not None:
                     draft.waiting = [draft.more]
@@ -232,12 +232,13 @@ class Reducer:
             if segment.situation in self.starts:
                 segment.pending = holder
             return self._step("refine", draft)
+        refinements = draft.refinements
         below = [child.situation for child in segment.children]
-        below += [c.situation for r in draft.refinements.values() for c in r.children if c.situation not in touched]
+        below += [c.situation for r in refinements.values() for c in r.children if c.situation not in touched]
         adaptation = self.issuer.issue(draft, difference, self.assuming.beliefs, self.assuming.watched)
         self.starts.pop(segment.situation, None)
         segment.stale, segment.urgency, segment.asked = False, QUIESCENT, ()
-        for situation in draft.refinements:
+        for situation in refinements:
             issued = self.model.segments[situation]
             issued.avoided, issued.settled = draft.to_avoid(situation), situation in draft.settled
         for stub in self.issuer.introduced:
@@ -257,7 +258,7 @@ class Reducer:
     def _record(self, adaptation: Adaptation, draft: Draft, because: tuple[Because, ...]) -> None:
         """Keep what is needed to explain it."""
         names = self.model.names
-        subjects = tuple(Subject(names[s], s, self._schema(s), *draft.contexts[s]) for s in draft.refinements)
+        subjects = tuple([Subject(names[s], s, self._schema(s), *draft.contexts[s]) for s in draft.refinements])
         self.records[adaptation.id] = Record(adaptation.id, adaptation.purpose, because, subjects)
         if len(self.records) > MOST_RECORDS:
             del self.records[next(iter(self.records))]

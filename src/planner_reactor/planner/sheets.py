@@ -8,6 +8,7 @@ what a further reaction costs does not depend on how long it is to write.
 from __future__ import annotations
 
 import re
+from functools import lru_cache
 from typing import TypeAlias
 
 import msgspec
@@ -44,12 +45,17 @@ class Sheet(msgspec.Struct, frozen=True):
         """The text for this refinement, which is alike."""
         constants = refinement.exchanged
         values = [
-            names[hole.renamed(constants) if constants else hole]
-            if isinstance(hole, Situation)
-            else show(reactions.constant(constants.get(hole.term, hole.term)))
+            _shown(constants.get(hole.term, hole.term))
+            if isinstance(hole, Constant)
+            else names[hole.renamed(constants) if constants else hole]
             for hole in self.holes
         ]
         return self.text % tuple([values[place] for place in self.places])
+
+
+@lru_cache(4096)
+def _shown(term: Term) -> str:
+    return show(reactions.constant(term))
 
 
 class _Lettering:

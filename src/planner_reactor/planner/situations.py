@@ -128,26 +128,28 @@ class Refinement(msgspec.Struct, frozen=True):
     def renamed(self, constants: dict[Term, Term]) -> Refinement:
         """The same refinement for constants that the domain does not tell apart."""
         assert not self.exchanged
+        names: tuple[frozenset[str], ...] = (self.required, self.presumed, self.missing, self.in_use)
+        if any(map(_speak_of_constants, names)):
+            names = tuple([_renamed_names(some, constants) for some in names])
+        required, presumed, missing, in_use = names
         return Refinement(
             self.situation.renamed(constants),
             self.composition,
             tuple([child.renamed(constants) for child in self.children]),
-            _renamed_names(self.required, constants),
-            _renamed_names(self.presumed, constants),
-            _renamed_names(self.missing, constants),
+            required,
+            presumed,
+            missing,
             tuple([Atom(a.predicate, tuple([constants.get(t, t) for t in a.arguments])) for a in self.asked]),
             self.blocked,
             self.warnings,
             self.gave_up,
-            _renamed_names(self.in_use, constants),
+            in_use,
             constants,
         )
 
 
 def _renamed_names(names: frozenset[str], constants: Mapping[Term, Term]) -> frozenset[str]:
     """Names of assumptions, those with arguments for other constants."""
-    if not _speak_of_constants(names):
-        return names
     found = set()
     for name in names:
         whole, bracket, arguments = name.partition("(")
