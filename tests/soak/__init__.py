@@ -1,0 +1,1 @@
+"""A reactor that lives long: nothing of a situation stays behind when it has ended."""
