@@ -52,6 +52,8 @@ EXPERIMENTS: dict[str, Experiment] = {
                               "and without", _of("assumptions")),
     "reactors": Experiment("every reactor that can be built on the nine assumptions, run where they hold and where not",
                            _of("every_reactor")),
+    "dynamics": Experiment("the second paper's figures 2 to 8, from the texts of the models and from runs of them",
+                           _of("figures_signals")),
     "tracking": Experiment("TRACK, found from a model: an object kept in view, until it is not dense enough",
                            _of("tracking")),
     "acquiring": Experiment("GuardedMove and GuardedWait, found from models: a thousand runs each, and changing between",
