@@ -95,6 +95,17 @@ def test_equations_10_and_11_from_one_ideal_reactor_to_the_next() -> None:
     assert all(v.holds for v in partially_ideal(partials, environment(ONE), GOAL, given_up))
 
 
+@pytest.mark.parametrize("name", SINGLE)
+def test_equation_10_every_reactor_on_the_way_works_where_the_first_did_and_the_last_everywhere(name: str) -> None:
+    """f(e_j) is the assumption, as long as anything of it is not finished; e_j: `planner/test_convergence.py`."""
+    world = environment(ONE)
+    partials = chain(ONE, name)
+    assert len(partials) > 1
+    assert all(achieves(partial.text, world(NOTHING), GOAL).holds for partial in partials)
+    assert achieves(partials[-1].text, world(frozenset({name})), GOAL).holds
+    assert not partials[-1].unfinished
+
+
 def test_what_is_not_finished_is_needed() -> None:
     """(10) without f(e_j): the partial reactor fails where what it still rests on fails."""
     half = chain(ONE, "AQ")[1]

@@ -220,6 +220,9 @@ class Life:
         tally.schedules += 1
         tally.changes += given
         tally.flips += self.world.flips - flips
+        forced = sum(r.cause != "normal" for r in self.planner.relaxations)
+        if forced > tally.flips:
+            raise Unsafe(f"{forced} changes of mind, and the world has changed {tally.flips} times")
         tally.most = max(tally.most, new / (given + again + begins)) if new else tally.most
         tally.reached[",".join(sorted(self.planner.relaxed))] += 1
         returned = Counter(r.assumption for r in self.planner.relaxations if r.cause == "reinstated")

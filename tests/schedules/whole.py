@@ -30,11 +30,11 @@ MOST_WAIT = 400.0
 class WholeLife:
     """A run that goes on from schedule to schedule."""
 
-    def __init__(self, name: str, returning: bool, seed: int) -> None:
+    def __init__(self, name: str, returning: bool, seed: int, *, period_ms: int | None = None) -> None:
         self.name, self.returning = name, returning
         self.domain = domain(name, returning)
         self.truth = dict.fromkeys(self.domain.assumptions, True)
-        planner = Planner(self.domain, relax=())
+        planner = Planner(self.domain, relax=(), period_ms=period_ms)
         self.loop = Loop(planner, lambda s, t: _host(self.domain, self.truth, s, t), seed=seed, keep_trace=False)
         self.loop.reactor.start()
         self.loop.scheduler.soon(self.loop._turn)
