@@ -64,7 +64,8 @@ def run(
     late = LATENESS if clock == "wall" else 0.0
     monitor = Monitor(executer, program, used, trace, lateness=late) if conform else None
     root = start(call, arguments)
-    executer.run(until)
+    with executer.patient():
+        executer.run(until)
     return _came_to(root, executer) | ({"conformance": monitor.report()} if monitor is not None else {})
 
 

@@ -127,7 +127,8 @@ class Loop:
         self.reactor.start()
 
     def _go(self, until: float | None) -> None:
-        self.reactor.executer.run(until=until)
+        with self.reactor.executer.patient():
+            self.reactor.executer.run(until=until)
 
     def _look(self) -> None:
         """A world may finish without a word: ask it now and then, as long as anything goes on."""
@@ -137,6 +138,11 @@ class Loop:
             self.scheduler.call_after(LOOK_AGAIN, self._look)
 
     # -- the planner's side
+
+    def tell(self, what: Callable[[Planner], object]) -> None:
+        """Somebody tells the planner something (`advice`); it goes on thinking with that."""
+        what(self.planner)
+        self._perceived()
 
     def _meet(self, planner: Planner) -> None:
         limits = {name: process.limit for name, process in self.host.processes.items()}

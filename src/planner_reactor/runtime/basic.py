@@ -14,10 +14,12 @@ from typing import Any
 from planner_reactor.rs.expressions import is_number
 from planner_reactor.rs.terms import Value
 from planner_reactor.rs.vocabulary import Signature
+from planner_reactor.runtime.apart import Workers, apart
 from planner_reactor.runtime.host import BasicProcess
 from planner_reactor.runtime.kernel import Kernel
 from planner_reactor.runtime.leaves import Use
 from planner_reactor.runtime.outcomes import STOPPED, Outcome
+from planner_reactor.runtime.patience import HeldUp
 from planner_reactor.runtime.scheduler import Timer
 from planner_reactor.runtime.signals import Aborted, Signal, Within, sleep
 from planner_reactor.runtime.strands import WAITING, Strand
@@ -46,12 +48,13 @@ class Basic:
     resting = False
     announces = False
 
-    def __init__(self, process: BasicProcess, kernel: Kernel) -> None:
+    def __init__(self, process: BasicProcess, kernel: Kernel, workers: Workers) -> None:
         self.signature: Signature = process.signature
         self.name = process.signature.name
         self.running = 0
         self._kernel = kernel
-        self._routine = process.routine
+        blocks = process.blocking and not kernel.scheduler.clock.jumps
+        self._routine = apart(process.routine, kernel.scheduler, workers) if blocks else process.routine
         self._abandon = process.abandon
         self._limit = process.limit
         self._low = process.signature.window[0] if process.signature.window else 0.0
@@ -65,8 +68,9 @@ class Basic:
                 self._kernel.note("mistake", name=self.name, place=str(strand.site), arguments=repr(arguments))
                 return Outcome(False, cause="error")
         try:
-            begun = self._routine(*arguments)
-        except Exception as problem:
+            patience = self._kernel.patience
+            begun = self._routine(*arguments) if patience is None else patience.call(self._routine, *arguments)
+        except (Exception, HeldUp) as problem:
             return self._settled(self.raised(problem), strand, arguments)
         if begun is None and self._nothing is not None:
             return self._nothing
@@ -108,7 +112,7 @@ class Basic:
             return Outcome(False, cause="error")
         return Outcome(True, values)
 
-    def raised(self, problem: Exception) -> Outcome:
+    def raised(self, problem: BaseException) -> Outcome:
         if isinstance(problem, Aborted) and "abort" in self.signature.outcomes:
             self._kernel.note("aborted", name=self.name, message=str(problem))
             return Outcome(False, cause="failed")
@@ -142,10 +146,12 @@ class Run:
     def go(self, value: object) -> Outcome | None:
         """Let the host's code run to where it waits next; its outcome if that was its end."""
         try:
-            wanted = self._routine.send(value)
+            patience = self._basic._kernel.patience
+            routine = self._routine
+            wanted = routine.send(value) if patience is None else patience.call(routine.send, value)
         except StopIteration as end:
             return self._basic.returned(end.value)
-        except Exception as problem:
+        except (Exception, HeldUp) as problem:
             return self._basic.raised(problem)
         return self._wait(wanted)
 
@@ -172,9 +178,10 @@ class Run:
             self._shielded(lambda: abandon(*self._arguments))
 
     def _shielded(self, call: Callable[[], object]) -> None:
+        patience = self._basic._kernel.patience
         try:
-            call()
-        except Exception as problem:
+            call() if patience is None else patience.call(call)
+        except (Exception, HeldUp) as problem:
             self._basic.raised(problem)
 
     def _wait(self, wanted: object) -> Outcome | None:

@@ -44,7 +44,6 @@ from planner_reactor.runtime.regions import Region, exported
 from planner_reactor.runtime.strands import OUTSIDE, SENSING, SERVING, UNBOUND, Frame, Instruction, Where
 from planner_reactor.runtime.values import CONSTANTS, Functions, frames, reader, tuples
 
-
 MOST_FORMS = 256
 """Forms of scripts that are kept compiled."""
 

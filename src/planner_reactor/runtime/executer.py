@@ -7,7 +7,8 @@ scheduler alone; between events nothing runs. The reactor extends it by `Control
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Iterable, Mapping
+from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
 
 import msgspec
 
@@ -15,6 +16,7 @@ from planner_reactor.errors import InputError, nearest
 from planner_reactor.rs.prelude import PRELUDE
 from planner_reactor.rs.terms import Call, Process, Program, Schema, Value, Variable, calls
 from planner_reactor.rs.vocabulary import BUILT_IN
+from planner_reactor.runtime.apart import Workers
 from planner_reactor.runtime.basic import Basic
 from planner_reactor.runtime.budgets import Budgets
 from planner_reactor.runtime.compiler import Compiler
@@ -23,12 +25,16 @@ from planner_reactor.runtime.host import Host
 from planner_reactor.runtime.kernel import Kernel
 from planner_reactor.runtime.leaves import Use
 from planner_reactor.runtime.outcomes import Control, Label, Observer, Outcome
+from planner_reactor.runtime.patience import Patience
 from planner_reactor.runtime.ports import Port
 from planner_reactor.runtime.rest import is_resting
 from planner_reactor.runtime.scheduler import Scheduler
 from planner_reactor.runtime.strands import WAITING, WOKEN, Body, Root, Strand
 from planner_reactor.runtime.witnesses import Witness
 from planner_reactor.trace import Trace
+
+PATIENCE = 0.1
+"""Seconds for which host code may hold up the loop, if nothing else is said."""
 
 
 class Statistics(msgspec.Struct, frozen=True):
@@ -67,7 +73,8 @@ class Executer:
         self.scheduler = scheduler
         self.roots: list[Root] = []
         self._kernel = Kernel(scheduler, budgets or Budgets(), observer)
-        self._basics = [Basic(process, self._kernel) for process in (host.processes.values() if host else ())]
+        workers = Workers()
+        self._basics = [Basic(process, self._kernel, workers) for process in (host.processes.values() if host else ())]
         by_name: dict[str, Control] = {control.name: control for control in controls}
         by_name |= {basic.name: basic for basic in self._basics}
         self._controls: Mapping[str, Control] = by_name
@@ -120,6 +127,22 @@ class Executer:
                 self.scheduler.run(until)
             finally:
                 self._running = False
+
+    @contextmanager
+    def patient(self, seconds: float = PATIENCE) -> Iterator[None]:
+        """While it runs in here, a call of host code that holds up the loop for so many seconds is interrupted.
+
+        On the wall clock, in the main thread; elsewhere without effect.
+        """
+        if self.scheduler.clock.jumps:
+            yield
+            return
+        patience = self._kernel.patience = Patience(seconds)
+        try:
+            with patience.kept():
+                yield
+        finally:
+            self._kernel.patience = None
 
     def kill(self, root: Root) -> None:
         """Abort a root, as soon as the present step is over; without effect on one that has ended."""
@@ -278,4 +301,4 @@ class Executer:
 
 def _has_ports(schema: Schema) -> bool:
     """Ports are the loop's own: what has any is compiled there, when it is first called."""
-    return any([call.name in ("IN", "OUT") for call in calls(schema.body)])
+    return any(call.name in ("IN", "OUT") for call in calls(schema.body))

@@ -75,6 +75,7 @@ class BasicProcess(msgspec.Struct, frozen=True):
     abandon: Callable[..., object] | None
     limit: float
     places: int  # parameters that the routine takes
+    blocking: bool = False  # runs in a thread of its own
 
 
 class Host:
@@ -104,6 +105,7 @@ class Host:
         outcomes: tuple[str, ...] = ("stop", "abort"),
         limit: float | None = None,
         abandon: Callable[..., object] | None = None,
+        blocking: bool = False,
         name: str | None = None,
         means: str = "",
     ) -> Callable[[Routine], Routine]:
@@ -112,9 +114,10 @@ class Host:
         Parameters annotated `float` or `int` take numbers, `str` symbols, any other a value of any kind. What it
         returns are its results: None for none, a tuple for several. It ends at an age within `window`; if it would end
         earlier, it ends at the window's beginning. After `limit` seconds (the window's end, if not given) it is
-        abandoned and aborts. `abandon(*arguments)` is called once if it is aborted from outside while it runs. `means` is
-        a test in RS on its parameters, `LST[p - a, 1] : LST[a - p, 1]`, that stops where the process stops: with it an
-        analysis knows what the outcome says.
+        abandoned and aborts. `abandon(*arguments)` is called once if it is aborted from outside while it runs. What is
+        `blocking`, a plain function that waits for a device or computes for long, runs in a thread on the wall clock.
+        `means` is a test in RS on its parameters, `LST[p - a, 1] : LST[a - p, 1]`, that stops where the process stops:
+        with it an analysis knows what the outcome says.
         """
 
         def register(routine: Routine) -> Routine:
@@ -124,11 +127,13 @@ class Host:
             kinds, optional = _kinds(routine)
             self._check_new(own)
             _check_outcomes(own, outcomes)
+            if blocking and (inspect.isgeneratorfunction(routine) or inspect.iscoroutinefunction(routine)):
+                raise InputError(f"{own}: what is blocking is a plain function, not one that yields or awaits")
             signature = Signature(
                 own, kinds, names, optional=optional, window=(window[0], min(window[1], longest)),
                 outcomes=frozenset(outcomes), parameters=tuple(inspect.signature(routine).parameters), means=means,
             )  # fmt: skip
-            self.processes[own] = BasicProcess(signature, routine, abandon, longest, len(kinds))
+            self.processes[own] = BasicProcess(signature, routine, abandon, longest, len(kinds), blocking)
             return routine
 
         return register

@@ -19,6 +19,7 @@ from planner_reactor.rs.terms import Value
 from planner_reactor.runtime.budgets import Budgets
 from planner_reactor.runtime.killing import abort_body, cut_body, kill
 from planner_reactor.runtime.outcomes import Label, Observer
+from planner_reactor.runtime.patience import Patience
 from planner_reactor.runtime.pause import Passing, Pause
 from planner_reactor.runtime.scheduler import Entry, Scheduler
 from planner_reactor.runtime.strands import (
@@ -46,6 +47,7 @@ class Kernel:
         self.sites: tuple[Hashable, ...] = ()
         self.note: Callable[..., None] = lambda kind, **fields: None
         self.on_end: Callable[[Root], object] = lambda root: None
+        self.patience: Patience | None = None  # how long host code may hold up the loop
         self.silent: deque[Strand] = deque()
         self.ready: deque[Strand] = deque()
         self.live = 0

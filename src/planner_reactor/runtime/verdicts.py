@@ -15,7 +15,7 @@ from planner_reactor.runtime.strands import FORKED, Fork
 class Verdicts:
     """The `#`s that wait for their verdict; `new` holds those not ranked yet (outside a verdict: all)."""
 
-    __slots__ = ("ranked", "new")
+    __slots__ = ("new", "ranked")
 
     def __init__(self) -> None:
         self.new: list[Fork] = []
