@@ -56,6 +56,8 @@ EXPERIMENTS: dict[str, Experiment] = {
                            _of("figures_signals")),
     "tracking": Experiment("TRACK, found from a model: an object kept in view, until it is not dense enough",
                            _of("tracking")),
-    "acquiring": Experiment("GuardedMove and GuardedWait, found from models: a thousand runs each, and changing between",
+    "acquiring": Experiment("GuardedMove and GuardedWait, found from models: a thousand runs each, and the change",
                             _of("acquiring")),
+    "picking": Experiment("parts that slide away, picked by a derived reaction and by the hand-written one",
+                          _of("picking")),
 }

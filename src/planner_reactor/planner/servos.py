@@ -4,9 +4,9 @@
 for granted (a condition of its dynamics, such as p < nu) is an *assumption inside the model*: `assuming` names it, and
 with that relaxed, reinstated and monitored as any other (R §6). What follows from several models is there once.
 
-Texts are paced by the interface's own timing, so that a loop through the environment is stable: what is sensed is handed
-on for as long as its sensor holds it and no longer, and what moves by increments waits until the agent has sensed what
-the last one did (X §4.4.2: a deviation is undone in a single step).
+Texts are paced by the interface's own timing, so that a loop through the environment is stable: what is sensed is
+handed on for as long as its sensor holds it and no longer, and what moves by increments waits until the agent has
+sensed what the last one did (X §4.4.2: a deviation is undone in a single step).
 """
 
 from __future__ import annotations
@@ -42,7 +42,8 @@ class Model(msgspec.Struct, frozen=True, kw_only=True):
 
     `assuming` maps a condition of its dynamics to the assumption under which it is taken to hold; it may also name an
     action, which then is not selected without the assumption. `watching` says how the reaction itself can tell that an
-    assumption holds: a process of RS that stops as long as it does, and aborts when it does not.
+    assumption holds: a process of RS that stops as long as it does, and aborts when it does not. `interface`: the
+    sensory and motor processes that there are, if not all that the text defines.
     """
 
     text: str
@@ -51,6 +52,7 @@ class Model(msgspec.Struct, frozen=True, kw_only=True):
     given: Mapping[str, float] = {}
     assuming: Mapping[str, str] = {}
     watching: Mapping[str, str] = {}
+    interface: tuple[str, ...] | None = None
     patience_ms: int = SELDOM
 
 
@@ -95,7 +97,7 @@ def _needs(action: DerivedAction) -> list[str]:
 def derived(model: Model) -> list[tuple[DerivedAction, str]]:
     """The actions of a model with their texts, paced."""
     program = parse_program(model.text, file=model.environment)
-    found = derive(program, model.environment, signatures=model.signatures)
+    found = derive(program, model.environment, model.interface, signatures=model.signatures)
     world = opened(program, model.signatures, given=model.given)
     timing = {c.inner: _timing(c, Netlist(c.process, world)) for c in found.interface}
     needed = {name for a in found.actions for name in _open_conditions(a)}

@@ -38,3 +38,14 @@ def with_kit(domain: str, kit: KitSpec) -> str:
     if len(found) != 1:
         raise InputError(f"a domain for kits has one rule '=> Contents(t) @ i', this one has {len(found)}")
     return _RULE.sub(lambda match: contents_rule(kit), domain)
+
+
+_BY_HAND = re.compile(r"atp_actionschema (Track|Get) .*?endactionschema\n", re.DOTALL)
+
+
+def without_tracking(domain: str) -> str:
+    """The text of the domain without the hand-written way to pick what moves, with what a servo reaction needs."""
+    left, removed = _BY_HAND.subn("", domain)
+    if removed != 2:
+        raise InputError(f"expected the actions Track and Get once each, found {removed}")
+    return left + (files("planner_reactor.workcell") / "servo.itl").read_text(encoding="utf-8")

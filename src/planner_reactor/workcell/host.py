@@ -25,6 +25,7 @@ from planner_reactor.workcell.monitors import CAUTIONS, Monitors
 from planner_reactor.workcell.picking import Picking
 from planner_reactor.workcell.placing import Placing
 from planner_reactor.workcell.plant import Plant
+from planner_reactor.workcell.servo import Servo
 from planner_reactor.workcell.world import World
 
 REACTION_S = 0.2
@@ -39,9 +40,10 @@ def host(
     calibration: Calibration = PINNED,
     trace: Trace | None = None,
     cautions: Mapping[str, Caution] | None = None,
+    servo: bool = False,
 ) -> Host:
     """A kitting workcell on this scheduler. `target`: the world is finished after so many completed kits (0:
-    never); `cautions`: how the readings of its sensors are taken.
+    never); `cautions`: how the readings of its sensors are taken; `servo`: the arm can be moved by increments.
     """
     plant = Plant(kit, calibration, scheduler, trace=trace)
     world = World(plant, target=target)
@@ -51,7 +53,10 @@ def host(
     world.arm = cell.arm
     cell.evidence.sensed = world.sensed
     cell.evidence.report = lambda assumption, text: made.report(assumption, False, text)
+    served = Servo(made, cell) if servo else None
     for name, routine, results, high in processes(cell):
+        if served is not None and name == "Locate":
+            routine = served.locating(routine)
         outcomes = ("abort",) if name == "Track" else ("stop", "abort")
         made.process(results=results, window=(0.0, high), outcomes=outcomes, name=name)(paced(routine, scheduler))
     monitors = Monitors(cell)

@@ -137,6 +137,10 @@ class Sensors:
         gauss, noise = self._random.gauss, self._plant.calibration.pose_noise
         return part.u + gauss(0.0, noise), part.y + gauss(0.0, noise)
 
+    def between_fingers(self, u: float, y: float) -> bool:
+        """The light barrier between the fingers: is something there when the gripper is open at this place?"""
+        return self._plant.belt.under(u, y, self._plant.calibration.grasp_tolerance / 2) is not None
+
     def palm(self) -> PartView | TrayView | None:
         """What the palm camera sees in the gripper."""
         thing = self._plant.gripper
