@@ -89,6 +89,8 @@ class Guards:
         self._by_label[guarded.label] = guarded
         self._by_strand[guarded.strand] = guarded
         self._notice("added", label=guarded.label)
+        for poster in [p for p, label in self._posters.items() if label == guarded.label]:
+            self._waker.wake(poster)  # to be refused: the label is in use now
 
     def waits(self, strand: Strand) -> Outcome | None:
         if (late := self._refused.pop(strand, None)) is not None and late.label not in self._by_label:
@@ -152,14 +154,14 @@ class Guards:
 
     def _add(self, strand: Strand, arguments: tuple[Value, ...]) -> Outcome | None:
         self._adders.append(strand)
-        for poster in list(self._posters)[:1]:
-            self._waker.wake(poster)
+        self._wake_a_poster()
         return None
 
     def _post(self, strand: Strand, arguments: tuple[Value, ...]) -> Outcome | None:
         label = arguments[0]
         self._posters.pop(strand, None)
         if label in self._by_label:
+            self._wake_a_poster()
             return ERROR
         if not self._adders:
             self._posters[strand] = label
@@ -169,4 +171,11 @@ class Guards:
         return STOPPED
 
     def _left_post(self, strand: Strand) -> None:
-        self._posters.pop(strand, None)
+        """N9: it is aborted while it waits."""
+        del self._posters[strand]
+        self._wake_a_poster()
+
+    def _wake_a_poster(self) -> None:
+        """An ADD that no poster has met is for the first that waits, also if one that was woken did not use it."""
+        if self._adders and self._posters:
+            self._waker.wake(next(iter(self._posters)))

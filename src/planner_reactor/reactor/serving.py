@@ -41,6 +41,7 @@ class Serving:
             self._notice("delivered", situation=situation.name, instance=instance.number, guard=reaction[0])
             if not opens:
                 served.give_back(instance)
+            self._offer_to(situation, served)  # another strand may wait at the same SIT, and there may be more
         return instance
 
     def _begun(self, situation: Situation, label: Hashable) -> Served:
