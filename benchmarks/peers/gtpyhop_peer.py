@@ -21,6 +21,13 @@ def plan_ms(kinds: int, *, relaxed: bool = False) -> float:
     return median_ms(lambda: _problem(kinds, relaxed=relaxed), lambda problem: _solve(*problem))
 
 
+def from_process_start(kinds: int) -> float:
+    """Milliseconds of CPU of a process that begins with nothing, plans the kit, and ends."""
+    from bench_planner import process_ms
+
+    return process_ms(__file__, str(kinds))
+
+
 def _solve(state: Any, todo: list[tuple[str, ...]]) -> Any:
     plan = gtpyhop.find_plan(state, todo)
     if not plan:
@@ -104,3 +111,7 @@ def _tested(state: Any, kind: str) -> list[tuple[str, ...]]:
     if state.belt[kind][0] == "bad":
         return [*looked, ("drop", kind), ("fill", kind)]
     return [*looked, ("pick", kind), ("insert", kind)]
+
+
+if __name__ == "__main__":
+    _solve(*_problem(int(sys.argv[1]), relaxed=False))

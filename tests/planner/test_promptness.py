@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
+from pathlib import Path
+from types import FrameType
+
 import pytest
 
-from planner_reactor.planner import Planner
+from planner_reactor.planner import Planner, Step
 from planner_reactor.planner.reducing import UNITS
 from tests.planner.driving import Book, first_adaptations, kitting, perception, planner_without, settle, texts
 from tests.planner.test_altered_domains import with_kinds
@@ -50,6 +55,75 @@ def test_what_a_relaxation_takes_follows_what_it_changes(name: str) -> None:
         taken.append((units(planner) - before, changes))
     (few, changed_few), (many, changed_many) = taken
     assert many - few <= 6 * (changed_many - changed_few)
+
+
+COLD = """
+from planner_reactor.logic.reader import read_domain
+from planner_reactor.planner import Planner
+planner = Planner(read_domain(sys.argv[1]))
+while not planner.step().adaptations:
+    pass
+print(*sys.modules)
+"""
+LATER = {f"planner_reactor.{name}" for name in ("analysis.adaptations", "analysis.forms", "rs.parser", "rs.evolves")}
+LATER |= {"dataclasses", "json", "difflib", "pathlib"}
+
+
+def test_the_first_adaptation_needs_neither_the_verifier_nor_the_parser_of_rs() -> None:
+    """A process that begins with nothing has it sooner: what is not needed yet is not loaded."""
+    command = [sys.executable, "-S", "-c", PATHS + COLD, str(CAFE)]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    assert "planner_reactor.planner.issuing" in done.stdout.split()
+    assert not LATER & {*done.stdout.split()}
+
+
+PATHS = f"import sys; sys.path[:] = {sys.path!r}"
+CAFE = Path(__file__).parents[2] / "examples" / "09_cafe.itl"
+
+
+class Calls:
+    """How many Python functions are called meanwhile."""
+
+    def __enter__(self) -> Calls:
+        self.count = 0
+        sys.setprofile(self._note)
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        sys.setprofile(None)
+
+    def _note(self, frame: FrameType, event: str, argument: object) -> None:
+        self.count += event == "call"
+
+
+def counted(planner: Planner) -> list[tuple[int, Step]]:
+    """Every step with the calls that it makes, until there is nothing to do."""
+    found = []
+    while True:
+        with Calls() as calls:
+            step = planner.step()
+        if step is None:
+            return found
+        found.append((calls.count, step))
+        for adaptation in step.adaptations:
+            planner.perceive(perception("adaptation_applied", str(adaptation.id)))
+
+
+def test_no_step_makes_many_calls_verification_included() -> None:
+    """The most are made where what all thirty kinds have in common is written, and read, at once."""
+    domain = with_kinds(*(f"p{n}" for n in range(30)))
+    calls = sorted(count for count, _ in counted(Planner(domain, relax="all")))
+    assert calls[-1] <= 5_500
+    assert calls[int(len(calls) * 0.99)] <= 4_000
+
+
+def test_an_adaptation_that_is_like_the_one_before_is_cheap() -> None:
+    made = []
+    for count in (10, 40):
+        planner, _ = planned(count)
+        planner.perceive(perception("assumption_failure", "AQ"))
+        made.append(sum(calls for calls, _ in counted(planner)))
+    assert made[1] - made[0] <= 30 * 200
 
 
 def test_a_perception_in_the_middle_of_a_thought_is_acted_on_in_the_next_step() -> None:

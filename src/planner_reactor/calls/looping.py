@@ -6,6 +6,7 @@ the caller gives is read and checked before the first event; then the trace is o
 
 from __future__ import annotations
 
+import gc
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, Final, TypedDict, Unpack, cast, get_args
@@ -135,6 +136,8 @@ def _run(text: str, file: str, host: HostSource, goal: str | None, given: _Optio
         outputs.attach(made.trace)
         if given.clock == "wall":
             made.trace.record("not_deterministic", because="the clock is the wall clock")
+            gc.collect()
+            gc.freeze()  # the collector looks no more at what was loaded: ten milliseconds at any instant
         late = LATENESS if given.clock == "wall" else 0.0
         monitor = attend(made.reactor, lateness=late) if given.conform else None
         given.watch(made)

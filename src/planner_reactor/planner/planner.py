@@ -32,7 +32,6 @@ from planner_reactor.planner.issuing import Issuer
 from planner_reactor.planner.model import Model
 from planner_reactor.planner.reducing import Reducer
 from planner_reactor.planner.relaxing import Assuming
-from planner_reactor.planner.resuming import Resumption, begun_anew
 from planner_reactor.planner.sensing import answer, to_ask
 from planner_reactor.planner.sizing import Sizing
 from planner_reactor.planner.standings import ANSWERS, Standings
@@ -265,6 +264,8 @@ class Planner:
         """Go on with a reactor that stands: take over what is as it should be, adapt the rest (`resuming`)."""
         if not self._standing.answers(standing):
             return
+        from planner_reactor.planner.resuming import Resumption, begun_anew  # reads RS, as no beginning does
+
         self._reducer = begun_anew(self._reducer)
         self._issuer, self.model = self._reducer.issuer, self._reducer.model
         self._withheld.clear()

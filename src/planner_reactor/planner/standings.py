@@ -8,13 +8,16 @@ once more, unchanged and under the same ids: what was applied is acknowledged ag
 from __future__ import annotations
 
 from collections.abc import Container, Mapping
+from typing import TYPE_CHECKING
 
 import msgspec
 
 from planner_reactor.link.messages import Enquiry, Perception, Standing
 from planner_reactor.planner.issuing import Issuer
-from planner_reactor.planner.resuming import Resumption
 from planner_reactor.planner.steps import Step
+
+if TYPE_CHECKING:
+    from planner_reactor.planner.resuming import Resumption
 
 ANSWERS = frozenset({"adaptation_applied", "adaptation_refused", "adaptation_timed_out"})
 
