@@ -23,7 +23,6 @@ from typing import Any
 
 import msgspec
 
-from planner_reactor.analysis.conditions import events_of
 from planner_reactor.analysis.denseness import Denseness, Failure, Netlist, Stage
 from planner_reactor.analysis.durations import at_most, greatest, least, less
 from planner_reactor.analysis.interface import parameters
@@ -34,7 +33,7 @@ from planner_reactor.rs.configurations import World
 from planner_reactor.rs.constraints import instance
 from planner_reactor.rs.prelude import QUANTUM
 from planner_reactor.rs.terms import Process, Value
-from planner_reactor.rs.unknowns import Applied, Compared, Sum, Symbolic, Unknown, split
+from planner_reactor.rs.unknowns import Applied, Compared, Sum, Symbolic, Unknown, split, unknowns
 
 
 class Check(msgspec.Struct, frozen=True):
@@ -190,13 +189,11 @@ def _margin(outer: Netlist, signal: Denseness, sink: str) -> Any:
     sets = [(u, new) for rounds in found for way in rounds.ways for phase in way.phases for p, got in phase.takes
             if p == sink for (_, u), new in zip(rounds.entry, way.again, strict=False) if new == got]  # fmt: skip
     own = {u for u, _ in parameters(outer.components[writer], outer.world)}
-    for event in events_of(signal.given):
-        told = meaning(event, outer.world)
-        quantity = next((a for a in event.arguments if isinstance(a, Unknown) and a not in own), None)
-        aimed = next((u for u, _ in sets if isinstance(u, Unknown) and u in event.arguments), None)
-        if told is not None and quantity is not None and aimed is not None:
-            return _slack([c for c in told if isinstance(c, Compared)], aimed, quantity)
-    return None
+    told = [c for atom in signal.given for c in meaning(atom, outer.world) or () if isinstance(c, Compared)]
+    named = {u for c in told for u in unknowns(c.value)}
+    quantity = [u for u in named if u.serial > 0 and u not in own]
+    aimed = [u for u, _ in sets if isinstance(u, Unknown) and u in named]
+    return _slack(told, aimed[0], quantity[0]) if len(quantity) == len(aimed) == 1 else None
 
 
 def _slack(told: Sequence[Compared], aimed: Unknown, quantity: Unknown) -> Any:
