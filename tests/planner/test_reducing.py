@@ -75,7 +75,7 @@ def test_without_another_way_the_stub_stays_and_the_reason_is_told() -> None:
     planner, book = planned(read_domain(SHOP), "WAX")
     assert "Wash : REASSERT[Polish]" in texts(planner)["Shop"]
     assert any("STUB[Polish]" in text for text in book.reactions.values())
-    assert planner.impossible == {"Polish": "no plan achieves Polish (not without WAX)"}
+    assert planner.impossible == {"Polish": "no plan achieves Polish (nothing brings about Waxed; not without WAX)"}
     planner.perceive(perception("assumption_holds", "WAX"))
     settle(planner, book)
     assert planner.ideal
@@ -87,7 +87,7 @@ def test_a_reaction_for_which_there_is_no_other_stays_as_it_is() -> None:
     planner.perceive(perception("assumption_failure", "WAX"))
     settle(planner, book)
     assert {n: t for n, t in book.reactions.items() if not t.startswith("HOLD")} == before
-    assert planner.impossible == {"Polish": "no plan achieves Polish (not without WAX)"}
+    assert planner.impossible == {"Polish": "no plan achieves Polish (nothing brings about Waxed; not without WAX)"}
     assert "HOLDMONITOR[WAX, 1000]" in book.reactions.values()
     planner.perceive(perception("assumption_holds", "WAX"))
     settle(planner, book)

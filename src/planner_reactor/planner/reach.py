@@ -41,6 +41,21 @@ class Reach:
             self.consulted.missing |= _missing(self.problem.theory, self.problem.beliefs.relaxed, predicate)
         return found
 
+    def out_of_reach(self) -> tuple[str, ...]:
+        """Why there can be no plan: the predicates behind the goals that nothing here can bring about, if there are."""
+        found: dict[str, None] = {}
+        waiting = [atom.predicate for atom in self.problem.goals if atom.predicate not in self._here]
+        seen = set(waiting)
+        while waiting:
+            predicate = waiting.pop(0)
+            needs = _needs(self.problem, predicate)
+            if not needs:
+                found[predicate] = None
+            for need in dict.fromkeys(n for way in needs for n in way if n not in self._here and n not in seen):
+                seen.add(need)
+                waiting.append(need)
+        return tuple(found)
+
     def least_together(self, predicates: Iterable[str]) -> int:
         """At least so many actions bring about all of these: those count that no action can help
         to two of.
@@ -55,6 +70,18 @@ class Reach:
                 counted |= contributors[predicate]
                 total += cost
         return max(total, largest)
+
+
+def _needs(problem: Problem, predicate: str) -> list[tuple[str, ...]]:
+    """What each way to bring the predicate about needs; a way that is not open here is none."""
+    theory, relaxed = problem.theory, problem.beliefs.relaxed
+    rules = [r for r in theory.domain.rules_for.get(predicate, ()) if _holds(r.assumptions, relaxed)]
+    schemas = [
+        schema
+        for schema, _ in theory.domain.producers.get(predicate, ())
+        if not (schema.name in problem.forbidden or schema.cleanup) and _holds(theory.assumed(schema), relaxed)
+    ]
+    return [tuple(a.predicate for a in r.body) for r in rules] + [tuple(sorted(theory.needs[s.name])) for s in schemas]
 
 
 def _missing(theory: Theory, relaxed: frozenset[str], predicate: str) -> frozenset[str]:

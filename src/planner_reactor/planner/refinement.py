@@ -19,6 +19,7 @@ from planner_reactor.logic.formulas import Atom, Numeral, Term, filled, variable
 from planner_reactor.planner.beliefs import Beliefs
 from planner_reactor.planner.plan import END, START, Link, Parameter, Plan, Step
 from planner_reactor.planner.problem import Consulted, Problem, Truth
+from planner_reactor.planner.reach import Reach
 from planner_reactor.planner.search import Search
 from planner_reactor.planner.situations import Child, Composition, Context, Refinement, Situation, situation_of
 from planner_reactor.planner.structure import (
@@ -91,6 +92,7 @@ class Refining(msgspec.Struct, eq=False):
             tuple(dict.fromkeys(self.warnings)),
             self.consulted.gave_up,
             frozenset(self.presumed | self.required),
+            unreachable=() if tree is not None else Reach(problem, self.consulted).out_of_reach(),
         )
 
     # ------------------------------------------------------------------------------------- the problem

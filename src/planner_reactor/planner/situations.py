@@ -87,6 +87,7 @@ class Refinement(msgspec.Struct, frozen=True):
     gave_up: bool = False
     in_use: frozenset[str] = frozenset()  # what it rests on or brings in
     exchanged: dict[Term, Term] = {}
+    unreachable: tuple[str, ...] = ()  # predicates that nothing brings about, where that is why there is no plan
 
     @property
     def situation_first(self) -> Situation:
@@ -117,6 +118,8 @@ class Refinement(msgspec.Struct, frozen=True):
     def why_impossible(self, name: str) -> str:
         """Where no plan was found: what would have been needed."""
         reasons = []
+        if self.unreachable:
+            reasons.append("nothing brings about " + " or ".join(self.unreachable))
         if self.gave_up:
             reasons.append("the search was given up")
         if self.asked:
@@ -145,6 +148,7 @@ class Refinement(msgspec.Struct, frozen=True):
             self.gave_up,
             in_use,
             constants,
+            self.unreachable,
         )
 
 
