@@ -41,17 +41,17 @@ def test_so_it_does_with_the_real_reactor_under_it(name: str, seed: int) -> None
 
 
 def test_what_flaps_faster_than_its_monitor_reads_costs_no_more_than_the_bound() -> None:
-    """Guests are looked for twice a second, and come or go every 0.35 s."""
-    life, lasts = WholeLife("cafe", True, 1, period_ms=500), 300.0
+    """Guests are looked for every 2 s, and come or go every 0.7 s."""
+    life, lasts = WholeLife("cafe", True, 1, period_ms=2000), 1000.0
 
     def turn() -> None:
         life.truth["Guests"] = not life.truth["Guests"]
-        life.loop.scheduler.call_after(0.35, turn)
+        life.loop.scheduler.call_after(0.7, turn)
 
     life.loop.scheduler.soon(turn)
     life.loop.reactor.executer.run(until=life.loop.scheduler.now + lasts)
     causes = [r.cause for r in life.loop.planner.relaxations if r.assumption == "Guests"]
-    assert 4 < causes.count("reinstated") <= 7 + lasts / (64 * 0.5)
+    assert 4 < causes.count("reinstated") <= 7 + lasts / (64 * 2.0)
     assert life.loop.issued < 5 * len(causes) + 10
     assert life.loop.reactor.laws.violations == []
 
