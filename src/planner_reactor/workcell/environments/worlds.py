@@ -9,6 +9,7 @@ is one world. `Gauge` is the experimenter's view of the truth: no host, sensor o
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from functools import lru_cache
 from typing import Any
 
 import msgspec
@@ -79,7 +80,7 @@ class Surroundings:
         self.constants = {**TIMING, **MEASURES, **(constants or {})}
         self.starts = tuple(float(starts[name]) for name in self.kind.starts)
         self.gauge = Gauge(scheduler, dict(zip(self.kind.starts, self.starts, strict=True)), self.constants)
-        program = program_of(self.kind, self.constants)
+        program = program_of(self.kind, tuple(self.constants.items()))
         host = senses(self.constants["field"], self.constants["stride"])
         self.executer = Executer(program, scheduler=scheduler, host=host, observer=self.gauge.saw)
         self.ports = self.executer.share(*self.kind.ports)
@@ -187,11 +188,12 @@ class Gauge:
         return found
 
 
-def program_of(kind: Kind, constants: Mapping[str, float]) -> Program:
+@lru_cache(64)
+def program_of(kind: Kind, constants: tuple[tuple[str, float], ...]) -> Program:
     """The definitions of a world, of which all constants are numbers; what a later text defines anew counts."""
     text = "\n".join(model(name) for name in kind.texts)
     last = {(schema.name, len(schema.head)): schema for schema in parse_program(text, file=kind.root).schemas}
-    program = with_values(Program(last.values()), constants)
+    program = with_values(Program(last.values()), dict(constants))
     found = check_addition(Program(), program, signatures={**BUILT_IN, **sight.signatures}, functions=sight.functions)
     if errors := [f for f in found if f.severity == "error"]:
         raise RSError(Source(text, kind.root).shown(errors))
