@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from typing import Any
 
 import pytest
+from msgspec.structs import replace
 
 from planner_reactor.errors import InputError
 from planner_reactor.experiments.loop import Loop
@@ -15,6 +16,7 @@ from planner_reactor.link.messages import Adaptation
 from planner_reactor.logic.reader import read_domain
 from planner_reactor.planner import Planner
 from planner_reactor.planner.because import Because
+from planner_reactor.planner.verifying import Gate
 from planner_reactor.runtime import Host, Scheduler
 from tests.planner.driving import KITTING, TENDING, Book, applied, image, kitting, perception, settle, texts
 from tests.planner.test_altered_domains import with_kinds
@@ -103,6 +105,47 @@ def test_a_withdrawal_that_is_refused_is_tried_again() -> None:
     (again,) = settle(planner, book)
     assert again.purpose == "withdraw goal Back"
     assert image(planner) == image(planned("Front")[0])
+
+
+def test_a_withdrawal_that_is_always_refused_is_given_up_and_the_goal_stays() -> None:
+    planner, book = planned("Front", "Back")
+    planner.withdraw("Back")
+    steps = 0
+    while (step := planner.step()) is not None:
+        for adaptation in step.adaptations:
+            planner.perceive(perception("adaptation_refused", str(adaptation.id), cause="never"))
+        steps += 1
+        assert steps < 100
+    assert planner.goals == ("Front", "Back")
+    planner.withdraw("Back")
+    settle(planner, book)
+    assert planner.goals == ("Front",)
+
+
+def test_a_goal_with_much_below_it_is_withdrawn_and_that_is_verified() -> None:
+    """More reactions than are looked at as a whole: its root, which serves nothing, was held to ask for ever."""
+    planner, book = Planner(kitting(), relax="none"), Book(kitting())
+    settle(planner, book)
+    planner.withdraw("Kitting")
+    (issued,) = settle(planner, book)
+    assert issued.purpose == "withdraw goal Kitting"
+    assert not planner.withheld
+    assert book.reactions == {}
+
+
+def test_a_withdrawal_that_leaves_the_root_behind_does_not_hold() -> None:
+    planner = Planner(kitting(), relax="none", verify=False)
+    gate, book = Gate(), Book(planner.domain)
+    sent = settle(planner, book)
+    planner.withdraw("Kitting")
+    for adaptation in sent:
+        assert gate.examine(adaptation).holds
+        gate.perceive(applied(adaptation))
+    (issued,) = settle(planner, book)
+    assert 0 in issued.kills
+    wrong = replace(issued, kills=tuple(label for label in issued.kills if label != 0))
+    assert not gate.examine(wrong).consistent
+    assert gate.examine(issued).holds
 
 
 def test_a_goal_that_is_not_pursued_or_not_there_is_named() -> None:

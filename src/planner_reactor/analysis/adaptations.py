@@ -15,7 +15,7 @@ from math import inf, isinf
 from planner_reactor.analysis.forms import Known
 from planner_reactor.analysis.looking import Looking, finish
 from planner_reactor.analysis.protocols import LIMIT, Checked, Counterexample, Protocol, checking
-from planner_reactor.analysis.slicing import Slice, Sliced, apart, sliced, unknown_names
+from planner_reactor.analysis.slicing import Slice, Sliced, apart, sliced, still_asking, unknown_names
 from planner_reactor.analysis.standing import Standing, shape
 from planner_reactor.analysis.verdicts import Environment, Verdict
 from planner_reactor.errors import BudgetError, InputError
@@ -123,7 +123,7 @@ class Verifier:
             return Verdict(local=False, bound_s=bound, why=f"{wrong[1]} would be held up at {wrong[0]}, drained first")
         states, verdict = 0, Verdict(bound_s=bound)
         for single in apart(before, coming, surgery):
-            part = sliced(before, [r for r in coming if r.label in single.adds], single)
+            part = sliced(still_asking(before, single, surgery), [r for r in coming if r.label in single.adds], single)
             if (found := self.seen.get(part.slice)) is None:
                 found = self.seen[part.slice] = yield from self._alone(part.slice)
                 states += found.states
@@ -132,6 +132,7 @@ class Verifier:
                 return verdict
         serves = {r.label: r for r in before}
         at_rest = {n for n, r in serves.items() if r.situation in surgery.held or r.monitors}
+        at_rest |= {n for n, r in serves.items() if r.situation is None and {*r.asserts} <= {*surgery.held}}
         if loose := [n for n in surgery.kills if n not in at_rest]:
             return Verdict(safe=False, bound_s=bound, why=f"P[{loose[0]}] is killed, and what it serves is not held")
         return verdict

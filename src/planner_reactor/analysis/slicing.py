@@ -117,18 +117,30 @@ def sliced(reactions: Sequence[Reaction], new: Sequence[Reaction], surgery: Surg
 
 
 def apart(reactions: Sequence[Reaction], new: Sequence[Reaction], surgery: Surgery) -> list[Surgery]:
-    """The surgery as one for each situation: a drain that has ended stays so, whatever follows."""
+    """The surgery as one for each situation: a drain that has ended stays so, whatever follows.
+
+    A root that goes, goes with what it asserts.
+    """
     serves = {r.label: r.situation for r in (*reactions, *new)}
+    roots = {r.label: r.asserts for r in reactions if r.situation is None}
     return [
         Surgery(
             held=(situation,),
-            kills=tuple(n for n in surgery.kills if serves.get(n) == situation),
+            kills=tuple(n for n in surgery.kills if serves.get(n) == situation or situation in roots.get(n, ())),
             adds=tuple(n for n in surgery.adds if serves.get(n) == situation),
             named=(situation,),
             removed=(situation,) if situation in surgery.removed else (),
         )
         for situation in surgery.held
     ]
+
+
+def still_asking(reactions: Sequence[Reaction], single: Surgery, whole: Surgery) -> list[Reaction]:
+    """Without those that go, too, once what they serve has come to its end: that is drained before what they assert."""
+    if not single.removed:
+        return list(reactions)
+    gone = {r.label for r in reactions if r.label in whole.kills and r.situation in whole.held}
+    return [r for r in reactions if r.label not in gone or r.situation in single.held]
 
 
 def is_monitor(reaction: Reaction) -> bool:

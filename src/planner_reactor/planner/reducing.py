@@ -21,7 +21,7 @@ from planner_reactor.planner.because import Because, Trigger
 from planner_reactor.planner.convergence import Convergence
 from planner_reactor.planner.drafts import Draft
 from planner_reactor.planner.explaining import Record, Subject
-from planner_reactor.planner.goals import root_schema
+from planner_reactor.planner.goals import guarded, root_schema
 from planner_reactor.planner.issuing import MOST_REFUSALS, Issuer, UnderWay
 from planner_reactor.planner.memory import Memory
 from planner_reactor.planner.model import Model, Segment
@@ -81,8 +81,6 @@ class Reducer:
         """All segments, with the goals also before they are issued."""
         return [*self.model, *self.starts.values()]
 
-    # ----------------------------------------------------------------------------------------------- goals
-
     def pursue(self, goal: str) -> None:
         """Plan for this goal, too, beside those that are there."""
         root = Situation(goal)
@@ -90,6 +88,7 @@ class Reducer:
         if root not in self.model.roots:
             self.model.roots[root] = None
             self._roots[root] = root_schema(self.theory, goal)
+            self.model.instead[root] = guarded(self.theory.domain, goal)
             self.starts[root] = self._new_start(root)
             self.starts[root].pending = self.issuer.holder(frozenset({root}))  # it may just be going
 
@@ -100,7 +99,7 @@ class Reducer:
         if self.starts.pop(root, None) is not None:
             self.model.roots.pop(root, None)
         elif root in self.model.roots:
-            self.leaving[root] = because
+            self.leaving[root], self._refused[root] = because, 0
 
     def _leave(self) -> Step | None:
         """Take one goal away at a time, so that what two have in common is not taken for what the other needs."""
@@ -118,9 +117,10 @@ class Reducer:
         return None
 
     def _come_back(self, root: Situation, because: Because) -> None:
-        """A goal could not be taken away: it is still there, and is still to go, unless it is wanted again."""
+        """A goal could not be taken away: it is still to go, unless it is wanted again, or was refused too often."""
         again = self.starts.pop(root, None)
-        if again is None:
+        self._refused[root] = self._refused.get(root, 0) + (because.trigger == "adaptation_refused")
+        if again is None and self._refused[root] < MOST_REFUSALS:
             self.leaving[root] = because
         self.abandon()
         self.mark(self.model.renew_contexts(list(self.model.segments)), QUIESCENT, because)
