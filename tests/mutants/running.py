@@ -20,8 +20,9 @@ import signal
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from importlib.readers import FileReader
 from pathlib import Path
-from types import CodeType, ModuleType
+from types import CodeType, ModuleType, SimpleNamespace
 
 ROOT = Path(__file__).parents[2]
 PLACES = {"planner_reactor": ROOT / "src", "tests": ROOT}
@@ -48,6 +49,12 @@ class Code(importlib.abc.MetaPathFinder, importlib.abc.Loader):
     def __init__(self) -> None:
         self._compiled: dict[str, CodeType] = {}
         self.changed: dict[str, CodeType] = {}
+
+    def shared(self) -> Code:
+        """Another that knows what this one has compiled, with changes of its own."""
+        other = Code()
+        other._compiled = self._compiled
+        return other
 
     def file(self, name: str) -> Path | None:
         """Where a module stands, if it is one of ours."""
@@ -76,6 +83,10 @@ class Code(importlib.abc.MetaPathFinder, importlib.abc.Loader):
 
     def exec_module(self, module: ModuleType) -> None:
         exec(self.code(module.__name__), module.__dict__)
+
+    def get_resource_reader(self, name: str) -> FileReader:
+        """The files beside a package's modules."""
+        return FileReader(SimpleNamespace(path=str(self.file(name))))
 
     def warm(self, tests: Sequence[str]) -> None:
         """Compile, once for all children, what these test modules import; import what is not ours."""

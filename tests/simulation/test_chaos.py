@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections import Counter
+from pathlib import Path
 
 import pytest
 from msgspec.structs import replace
 
+from planner_reactor import simulation
 from planner_reactor.reactor.journal import Journal
 from planner_reactor.reactor.reactor import Reactor
 from planner_reactor.simulation.cases import Case, Fault, Point, World, drawn
@@ -87,6 +89,11 @@ def test_every_row_has_a_counter_that_is_missed_when_it_is_nought() -> None:
     rows = dict.fromkeys(ROWS, 1)
     assert missing(rows) == []
     assert missing({**rows, "3 writes torn": 0}) == ["3 writes torn"]
+
+
+def test_every_counter_is_counted_somewhere() -> None:
+    counted = "".join(f.read_text() for f in Path(simulation.__file__).parent.glob("*.py") if f.stem != "counters")
+    assert [name for name in ROWS if f'"{name}"' not in counted and not name.startswith("4 frames")] == []
 
 
 def test_a_failing_case_is_made_as_small_as_it_can_be() -> None:

@@ -17,7 +17,7 @@ from planner_reactor.workcell.disturbances import DISTURBANCES
 World = Literal["workshop", "cell"]
 Kind = Literal[
     "crash", "power", "storm", "cut", "silent_reactor", "silent_planner", "planner", "leader", "stale", "full", "sync",
-    "halt", "flap", "unknown", "stuck", "noise", "late", "raise", "hang", "failing", "drive", "jump", "crowd",
+    "halt", "fails", "flap", "unknown", "stuck", "noise", "late", "raise", "hang", "failing", "drive", "jump", "crowd",
     "replay", "version", "watchdog", "world", "nothing",
 ]  # fmt: skip
 Point = Literal[
@@ -32,7 +32,7 @@ INSIDE: tuple[Kind, ...] = ("crash", "crash", "crash", "power", "power", "cut", 
 
 WEIGHTS: Mapping[Kind, int] = {
     "crash": 2, "power": 2, "storm": 1, "cut": 3, "silent_reactor": 2, "silent_planner": 2, "planner": 2, "leader": 2,
-    "stale": 2, "full": 1, "sync": 1, "halt": 1, "flap": 2, "unknown": 2, "stuck": 2, "noise": 2, "late": 2,
+    "stale": 2, "full": 1, "sync": 1, "halt": 1, "fails": 4, "flap": 2, "unknown": 2, "stuck": 2, "noise": 2, "late": 2,
     "raise": 3, "hang": 2, "drive": 3, "jump": 2, "replay": 2, "version": 1, "watchdog": 1,
 }  # fmt: skip
 
@@ -95,7 +95,7 @@ def drawn(world: World, seed: int, seconds: float) -> Case:
 def _what(kind: Kind, draw: Random) -> str:
     if kind == "world":
         return draw.choice(sorted(DISTURBANCES))
-    return f"A{draw.randrange(3)}" if kind in ("flap", "unknown", "stuck", "noise", "late") else ""
+    return f"A{draw.randrange(3)}" if kind in ("fails", "flap", "unknown", "stuck", "noise", "late") else ""
 
 
 def _lasts(draw: Random) -> float:

@@ -40,6 +40,7 @@ class Counting:
             "retired": lambda event: self._gone.add(event.data["label"]),
             "added": lambda event: self._come.add(event.data["label"]),
             "assumption_unknown": self._unknown,
+            "assumption_failure": lambda event: self._note("25 assumptions that failed"),
             "adaptation_repeated": lambda event: self._note("21 repeats that changed nothing"),
             "limit": lambda event: self._note("15 deeds that outlived their limit"),
             "zeno": lambda event: self._note("16 livelocks"),

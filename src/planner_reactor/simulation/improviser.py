@@ -186,11 +186,12 @@ class Improviser:
         """What can be wrong with an adaptation."""
         definitions, adds, new = sound.definitions, sound.adds, self.book.next_label
         first = adds[-1] if adds else 0
-        used = max(1, sound.id - 1 - len(self.book.pending))
+        used = [n for (epoch, n), o in self.book.outcomes.items() if epoch == self.book.epoch and o == "applied"]
         bare = replace(sound, changes=(), removed=(), kills=(), adds=(), definitions="")
         return {
             "versions": replace(
-                sound, changes=tuple(replace(c, base=c.base + 1) for c in sound.changes), kills=(*sound.kills, -1)
+                sound, changes=tuple(replace(c, base=c.base + 1) for c in sound.changes),
+                kills=sound.kills if sound.changes else (*sound.kills, -1),
             ),
             "absent label": replace(sound, kills=(*sound.kills, new + 7)),
             "absent situation": replace(sound, adds=adds[:-1], removed=("nowhere",)),
@@ -203,5 +204,5 @@ class Improviser:
             "recursion": replace(bare, definitions=f"P[{new}] = P[{new}] | P[{new}]\n", adds=(new,)),
             "parser bomb": replace(bare, definitions=f"P[{new}] = {'(' * 3000}STOP\n", adds=(new,)),
             "served by nobody": replace(bare, definitions=f"P[{new}] = STOP :; ASSERT[elsewhere]\n", adds=(new,)),
-            "used id": replace(bare, id=used, kills=(new + 7,)),
-        }
+            "used id": replace(sound, id=used[-1]) if used else replace(bare, id=1, kills=(new + 7,)),
+        }  # fmt: skip

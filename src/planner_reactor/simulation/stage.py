@@ -233,7 +233,7 @@ class Stage:
             return
         if self.planner is not None and (adaptation := self.brain.improvise()) is not None:
             self.send(adaptation)
-        self.scheduler.call_after(self.draw.uniform(2.0, 24.0), self._think)
+        self.scheduler.call_after(self.draw.uniform(2.0, 20.0), self._think)
 
     def send(self, message: Adaptation | Enquiry) -> None:
         if self.planner is not None:
@@ -259,7 +259,7 @@ class Stage:
                 break
             if isinstance(told, Standing):
                 self.stands(told)
-            elif isinstance(told, Perception) and self.watch.new(planner.session.peer, told):
+            elif isinstance(told, Perception) and self.watch.new(planner.session, told):
                 self._heard(told)
         if self.side is not None:
             self.scheduler.soon(self._pump)

@@ -171,9 +171,11 @@ def _halt(stage: Stage, fault: Fault) -> None:
 
 
 def _sensor(stage: Stage, fault: Fault) -> None:
-    """A sensor goes wrong for a while: it knows nothing, sticks, slips, or is late."""
+    """A sensor goes wrong for a while: it knows nothing, sticks, slips, or is late; or it is right, and there is no."""
     sensors, name = stage.shop.sensors, fault.what or "A1"
     match fault.kind:
+        case "fails":
+            sensors.truth[name] = False
         case "unknown":
             sensors.truth[name] = None
         case "stuck":
@@ -265,8 +267,8 @@ def _world(stage: Stage, fault: Fault) -> None:
 STRIKES: Mapping[Kind, Callable[[Stage, Fault], object]] = {
     "crash": _crash, "power": _crash, "storm": _storm, "cut": _cut, "silent_reactor": _cut, "silent_planner": _cut,
     "planner": _planner, "leader": _leader, "stale": _stale, "full": _disk, "sync": _disk, "halt": _halt,
-    "flap": _flap, "unknown": _sensor, "stuck": _sensor, "noise": _sensor, "late": _sensor, "raise": _deeds,
-    "hang": _deeds, "failing": _deeds, "drive": _drive, "jump": _jump, "crowd": _crowd, "replay": _replay,
-    "version": _version, "watchdog": _watchdog, "world": _world,
+    "fails": _sensor, "flap": _flap, "unknown": _sensor, "stuck": _sensor, "noise": _sensor, "late": _sensor,
+    "raise": _deeds, "hang": _deeds, "failing": _deeds, "drive": _drive, "jump": _jump, "crowd": _crowd,
+    "replay": _replay, "version": _version, "watchdog": _watchdog, "world": _world,
     "nothing": lambda stage, fault: None,
 }  # fmt: skip

@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections import Counter, deque
 
 from planner_reactor.link.messages import Adaptation, Perception
+from planner_reactor.link.session import Session
 from planner_reactor.reactor.laws import Violation
 from planner_reactor.reactor.storms import COUNTED, Intensity
 from planner_reactor.runtime import Scheduler
@@ -37,6 +38,7 @@ class Watch:
         self.commands: Counter[str] = Counter()
         self.totals: Counter[str] = Counter()
         self.heard = (0, 0)  # incarnation of the reactor and number of the last perception acted on
+        self._told: dict[tuple[int, int], int] = {}  # incarnations of planner and reactor → the number given last
         self.gave: dict[int, list[Perception]] = {}  # incarnation → what it gave to the link
         self.late_versions = 0
         self._intensity = intensity
@@ -114,6 +116,10 @@ class Watch:
         if self._last_beat is not None and now - self._last_beat > BEAT + LATE:
             self.breach(12, f"no beat for {now - self._last_beat:.2f} s")
         self._last_beat = now
+        if (side := self._side) is not None:
+            counted = sum(instance.bodies for instance in side.reactor.situations.instances.values())
+            if counted != (served := side.reactor.executer.statistics().bodies_in_service):
+                self.breach(11, f"instances: {counted} bodies are counted as in service, {served} are")
 
     def pause(self) -> None:
         """It does not act by right."""
@@ -172,8 +178,15 @@ class Watch:
 
     # -- what the planner hears
 
-    def new(self, incarnation: int, perception: Perception) -> bool:
-        """Is this one to be acted on? Numbered without gaps, of the content that was given (law 10)."""
+    def new(self, listener: Session, perception: Perception) -> bool:
+        """Is this one to be acted on? Numbered without gaps, of the content that was given (law 10).
+
+        A planner that begins anew may hear once more what the one before it had heard; the same one hears it once.
+        """
+        incarnation, ends = listener.peer, (listener.incarnation, listener.peer)
+        if perception.number <= self._told.get(ends, 0):
+            self.breach(10, f"perception {perception.number} is given twice")
+        self._told[ends] = perception.number
         last = self.heard[1] if self.heard[0] == incarnation else 0
         if perception.number <= last:
             return False
