@@ -12,6 +12,7 @@ from __future__ import annotations
 import argparse
 import json
 from collections.abc import Sequence
+from functools import lru_cache
 from pathlib import Path
 from random import Random
 from typing import NamedTuple
@@ -19,10 +20,13 @@ from typing import NamedTuple
 from planner_reactor.analysis.denseness import Denseness, dense, opened
 from planner_reactor.rs.loading import load
 from planner_reactor.rs.prelude import QUANTUM
+from planner_reactor.rs.terms import Program
 from planner_reactor.runtime import Executer, Host, Scheduler, VirtualClock
 
-PERIODS = 6
+PERIODS = 2
 """How many bounding periods a run lasts."""
+ALIKE = 20
+"""Runs of one network, each with other delays within its bounds."""
 CHUNK = 1_000
 
 
@@ -102,27 +106,39 @@ def network(random: Random) -> tuple[str, str, int]:
         streams += shape != "until taken"
         parts.append(f"S{n}")
     last = f"x{len(shapes)}"
-    pause = round(random.uniform(0.0, 0.5), 3)
+    pause = round(random.uniform(0.02, 0.5), 3)
     lines.append(f"Reader = ((Delay[0] : Ready) : IN[{last}]<v> : Got[v]) :; Term[{pause}]")
     lines.append(f"Net = {' | '.join(parts)} | Reader")
     return "\n".join(lines), " ".join(shapes) or "source", streams
 
 
 def run(seed: int) -> Run:
-    """One random network, analysed and run."""
-    random = Random(seed)
-    text, shape, streams = network(random)
-    clock = VirtualClock()
-    scheduler = Scheduler(clock, seed=seed)
-    station = Station(scheduler)
-    program = load(text, signatures=station.host.signatures)
-    found = dense(opened(program, station.host.signatures), "Net", last_port(text))
-    assert isinstance(found, Denseness), found
-    executer = Executer(program, scheduler=scheduler, host=station.host)
-    executer.start("Net")
-    executer.run(until=PERIODS * max(found.period, 0.1))
+    """One run of a random network: it is analysed once for every `ALIKE` runs."""
+    text, shape, streams, found, program = analysed(seed // ALIKE)
+    station = met(program, seed, PERIODS * max(found.period, 0.1))
     slack = streams * QUANTUM + 1e-6
     return Run(text, shape, station.waited, found.delay + slack, station.oldest, found.age + slack, station.read)
+
+
+def met(program: Program, seed: int, seconds: float) -> Station:
+    """What the reader of `Net` meets in one run."""
+    scheduler = Scheduler(VirtualClock(), seed=seed)
+    station = Station(scheduler)
+    executer = Executer(program, scheduler=scheduler, host=station.host)
+    executer.start("Net")
+    executer.run(until=seconds)
+    return station
+
+
+@lru_cache(maxsize=2)
+def analysed(number: int) -> tuple[str, str, int, Denseness, Program]:
+    """The random network of this number, its shape, its STREAMs, and what is read off its text."""
+    text, shape, streams = network(Random(number))
+    signatures = Station(Scheduler(VirtualClock())).host.signatures
+    program = load(text, signatures=signatures)
+    found = dense(opened(program, signatures), "Net", last_port(text))
+    assert isinstance(found, Denseness), found
+    return text, shape, streams, found, program
 
 
 def last_port(text: str) -> str:
@@ -143,8 +159,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         wrong = [first + n for n, r in enumerate(found) if not r.holds]
         line = {
             "first": first, "runs": len(found), "read": sum(r.read for r in found), "wrong": wrong,
-            "nearest_wait": max(r.waited / r.delay for r in found if r.delay > 0.1),
-            "nearest_age": max(r.oldest / r.age for r in found if r.age > 0.1),
+            "nearest_wait": round(max(r.waited / r.delay for r in found if r.delay > 0.1), 4),
+            "nearest_age": round(max(r.oldest / r.age for r in found if r.age > 0.1), 4),
         }  # fmt: skip
         done.append(json.dumps(line))
         with log.open("a", encoding="utf-8") as out:
