@@ -19,6 +19,7 @@ def test_the_reactor_gets_track_when_the_object_is_seen_to_move() -> None:
     assert [e.data["purpose"] for e in run.loop.trace.of("adaptation_applied")] == ["goal Keep", "give up Still: Keep"]
     assert "OUT[m1" in run.loop.reactor.text()
     assert (run.loop.reactor.laws.interruptions, run.loop.reactor.laws.violations) == (0, [])
+    assert (run.loop.planner.breaches, dict(run.loop.planner.withheld)) == ((), {})
 
 
 def test_an_object_that_stands_still_is_never_tracked() -> None:
