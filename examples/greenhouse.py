@@ -29,6 +29,7 @@ class Greenhouse:
         self.scheduler = scheduler
         self.water = Counter({"drawn": 1500, **dict.fromkeys(POTS, 500)})
         self.place = dict.fromkeys(POTS, 0)
+        self.shaded = False
         self.rained_s, self.pressure, self.turned = -60.0, True, Signal("tap turned on")
 
     def start(self, scheduler: Scheduler) -> None:
@@ -36,7 +37,7 @@ class Greenhouse:
 
     def dry(self) -> None:
         for pot in POTS:
-            self.move(pot, "evaporated", min(3, self.water[pot]))
+            self.move(pot, "evaporated", min(1 if self.shaded else 3, self.water[pot]))
         self.scheduler.call_after(1.0, self.dry)
 
     def move(self, source: str, target: str, amount: int) -> None:
@@ -116,6 +117,14 @@ def host(scheduler: Scheduler) -> Host:
         yield 2.0
         if house.water[pot] + finger.uniform(-50, 50) > FULL - CAN:
             raise Aborted("wet enough")
+
+    @made.process(window=(10.0, 10.0))
+    def Shade() -> Iterator[float]:
+        house.shaded = True
+        try:
+            yield 10.0
+        finally:
+            house.shaded = False
 
     @made.process(window=(3.0, 3.0))
     def LookFor(pot: str) -> Iterator[float]:

@@ -89,7 +89,7 @@ def test_an_unknown_condition_is_asked_for_once(domain: Domain) -> None:
     planner = Planner(domain, relax="none")
     request = asked(planner, Book(domain))
     assert request.definitions == (
-        "P[9] = if CheckHose then REPORT[Connected, hose, holds] else REPORT[Connected, hose, fails]\n"
+        "P[11] = if CheckHose then REPORT[Connected, hose, holds] else REPORT[Connected, hose, fails]\n"
     )
     assert request.changes == ()
     assert planner.step() is None

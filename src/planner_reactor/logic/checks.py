@@ -12,6 +12,7 @@ from collections.abc import Iterable, Iterator, Mapping
 
 from planner_reactor.errors import Diagnostic, nearest
 from planner_reactor.logic.domain import ActionSchema, Domain
+from planner_reactor.logic.formulas import Atom
 from planner_reactor.logic.itl_nodes import AtomNode, Name, SchemaNode
 from planner_reactor.logic.itl_tokens import Source
 from planner_reactor.logic.scope import TIME, Constants
@@ -26,6 +27,7 @@ class Survey:
         self.names: list[tuple[str, Name]] = []
         self.atoms: dict[str, list[tuple[AtomNode, str]]] = {}
         self.odd: list[Diagnostic] = []
+        self.instead: list[tuple[AtomNode, Atom]] = []
 
     def named(self, what: str, name: Name) -> None:
         """Something with a name of its own: an assumption, a goal, an action schema."""
@@ -69,6 +71,7 @@ def findings(survey: Survey, domain: Domain, *, whole: bool, warnings: bool) -> 
     yield from _arities(survey, domain)
     if whole:
         yield from _never_produced(survey, domain)
+        yield from _nothing_to_stand_in_for(survey, domain)
     if whole and warnings:
         yield from _never_used(survey, domain)
         yield from _never_taken(survey, domain)
@@ -108,6 +111,20 @@ def _never_produced(survey: Survey, domain: Domain) -> Iterator[Diagnostic]:
             message = f"nothing brings about {predicate}: no fact, rule, effect or assumption"
             hint = nearest(predicate, sorted(produced))
             yield survey.source.diagnostic(node.name.offset, "unknown-predicate", message, hint, severity=severity)
+
+
+def _nothing_to_stand_in_for(survey: Survey, domain: Domain) -> Iterator[Diagnostic]:
+    """What a goal acts instead of must be an abstract action: those alone are disabled."""
+    abstract = [schema.name for schema in domain.schemas.values() if schema.abstract]
+    for node, atom in survey.instead:
+        name, schema = node.name, domain.schemas.get(atom.predicate)
+        if schema is None or not schema.abstract:
+            hint = nearest(name.text, abstract) or f"abstract are {', '.join(abstract) or 'none'}"
+            yield survey.source.diagnostic(name.offset, "unknown-action", f"{name.text} is no abstract action", hint)
+        elif len(atom.arguments) != len(schema.inputs):
+            message = f"{name.text} with {len(atom.arguments)} arguments"
+            hint = f"expected {len(schema.inputs)}, as the action takes"
+            yield survey.source.diagnostic(name.offset, "arity", message, hint)
 
 
 def _never_used(survey: Survey, domain: Domain) -> Iterator[Diagnostic]:

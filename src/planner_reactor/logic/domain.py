@@ -180,7 +180,8 @@ class ActionSchema(_Placed, frozen=True):
 
 class Goal(_Placed, frozen=True):
     """`forall …: antecedent => Exists …: consequent`, R (13). `lasting` atoms must hold to the end of
-    time. A goal that is `kept` is never achieved once and for all: its consequent must hold at all times.
+    time. A goal that is `kept` is never achieved once and for all: its consequent must hold at all times. One that
+    acts `instead` of abstract actions is pursued while a failed assumption disables one of them (R §10, flaw 2).
     """
 
     name: str
@@ -189,6 +190,7 @@ class Goal(_Placed, frozen=True):
     lasting: tuple[bool, ...]
     size: int
     kept: bool = False
+    instead: tuple[Atom, ...] = ()
     place: Place | None = None
 
 

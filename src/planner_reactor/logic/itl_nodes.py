@@ -59,6 +59,7 @@ class GoalNode(msgspec.Struct, frozen=True):
     forall: tuple[Name, ...]
     antecedent: Clause | None
     consequent: Clause
+    instead: tuple[AtomNode, ...] = ()
 
 
 class RuleNode(msgspec.Struct, frozen=True):

@@ -3,7 +3,7 @@
     sentence    = assumption | goal | rule | persistence | fact | resource | schema
     assumption  = "atp_assumption" NAME "(" [names] ")" {"likelihood" NUMBER | "monitor" monitor | "reinstatable"} ";"
     monitor     = "flag" NUMBER | "reaction"
-    goal        = "atp_goal" NAME ["forall" names ":"] clause ["=>" clause] ";"
+    goal        = "atp_goal" NAME ["forall" names ":"] clause ["=>" clause] ["instead" atom {"," atom}] ";"
     rule        = "atp_rule" ["forall" names ":"] clause ("=>" | "<=>") clause ";"
     persistence = "atp_persistence" ["forall" names ":"] atom "while" atom {"and" atom} ";"
     fact        = "atp_fact" clause ";"
@@ -98,8 +98,6 @@ class _Parser:
             if self.token.text in self._sentences:
                 return
 
-    # ------------------------------------------------------------------------------------------ sentences
-
     def _assumption(self) -> AssumptionNode:
         name = self._name("the name of an assumption")
         parameters = self._arguments("()")
@@ -127,8 +125,11 @@ class _Parser:
         consequent = self._clause()
         if self._taken("=>"):
             antecedent, consequent = consequent, self._clause()
+        instead: list[AtomNode] = []
+        while self._taken("," if instead else "instead"):
+            instead.append(self._atom())
         self._need(";")
-        return GoalNode(name, forall, antecedent, consequent)
+        return GoalNode(name, forall, antecedent, consequent, tuple(instead))
 
     def _rule(self) -> RuleNode:
         offset = self.token.offset
@@ -220,8 +221,6 @@ class _Parser:
 
     def _optional_arguments(self) -> tuple[Name, ...]:
         return self._arguments("()") if self.token.text == "(" else ()
-
-    # ------------------------------------------------------------------------------------------- formulas
 
     def _clauses(self) -> list[Clause]:
         found: list[Clause] = []
@@ -322,8 +321,6 @@ class _Parser:
         hint = nearest(name.text, known) or f"expected one of {', '.join(NAMED)} or a list of {' '.join(BASES)}"
         message = f"{name.text} is not a relation between intervals"
         return WrongSentence(self.source.diagnostic(name.offset, "unknown-relation", message, hint))
-
-    # ---------------------------------------------------------------------------------------- small parts
 
     def _quantified(self, word: str) -> tuple[Name, ...]:
         if self.token.text not in (word, word.lower(), word.capitalize()):

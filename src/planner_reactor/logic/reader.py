@@ -182,8 +182,15 @@ class _Builder:
             lasting,
             len(scope.variables),
             kept=self._is_kept(node, ends),
+            instead=tuple(self._instead(atom, scope) for atom in node.instead),
             place=self._source.place(node.name.offset),
         )
+
+    def _instead(self, node: AtomNode, scope: Scope) -> Atom:
+        """An abstract action with its arguments: constants as they are, variables for whatever it is asserted with."""
+        atom = scope.atom(node)
+        self.survey.instead.append((node, atom))
+        return atom
 
     def _is_kept(self, node: GoalNode, ends: list[int]) -> bool:
         """Must everything that is wanted hold at all times? Not only a part of it."""

@@ -11,6 +11,7 @@ from typing import Final
 from planner_reactor.errors import InputError, nearest
 from planner_reactor.logic.domain import ActionSchema, Condition, Domain
 from planner_reactor.logic.formulas import Atom, Term, filled
+from planner_reactor.planner.situations import Situation
 from planner_reactor.planner.theory import Theory
 
 _FACT: Final = re.compile(r"\s*([A-Za-z]\w*)\s*\(([\w\s,]*)\)\s*")
@@ -26,10 +27,25 @@ def chosen_goal(domain: Domain, goal: str | None) -> str:
     return goal
 
 
+def pursued(domain: Domain, goal: str) -> tuple[str, ...]:
+    """This goal, those that are kept at all times, and those that stand in for what is disabled."""
+    return tuple(dict.fromkeys((goal, *(g.name for g in domain.goals.values() if g.kept or g.instead))))
+
+
+def guarded(domain: Domain, goal: str) -> tuple[Situation, ...]:
+    """The situations instead of which this goal is pursued, while they are disabled; none if it always is."""
+    return tuple(
+        Situation(atom.predicate, tuple(None if type(a) is int else a for a in atom.arguments))
+        for atom in domain.goals[goal].instead
+    )
+
+
 def must_follow(domain: Domain, before: Domain, goals: tuple[str, ...]) -> None:
     """Can this text take the place of that one while reactions of that one are at work?"""
     for goal in goals:
         chosen_goal(domain, goal)
+        if guarded(domain, goal) != guarded(before, goal):
+            raise InputError(f"{domain.file}: goal {goal} acts instead of others than before")
     for name in before.assumptions:
         if name not in domain.assumptions:
             raise InputError(f"{domain.file}: no assumption {name}, and reactions in place may rest on it")

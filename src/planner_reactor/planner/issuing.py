@@ -130,7 +130,8 @@ class Issuer:
         used = frozenset(model.uses)
         parts = _Parts()
         if model.roots.get(segment.situation, 0) is None:
-            model.roots[segment.situation] = self._add(parts, show(reactions.root(segment.situation, model.names)))
+            root = reactions.root(segment.situation, model.names, model.instead.get(segment.situation, ()))
+            model.roots[segment.situation] = self._add(parts, show(root))
         model.put(segment, refinement)
         if not same:
             self._replace(parts, segment, text)

@@ -91,6 +91,7 @@ class Model(msgspec.Struct, eq=False):
     """All segments, in the order in which they came up. `roots` are the goals, with the labels of what asserts them."""
 
     roots: dict[Situation, int | None] = msgspec.field(default_factory=dict)
+    instead: dict[Situation, tuple[Situation, ...]] = msgspec.field(default_factory=dict)  # goals that stand in
     names: Names = msgspec.field(default_factory=Names)
     segments: dict[Situation, Segment] = msgspec.field(default_factory=dict)
     uses: dict[str, int] = msgspec.field(default_factory=dict)  # assumption → segments that rest on it or bring it in

@@ -27,7 +27,7 @@ from planner_reactor.planner.diagnosing import Diagnosing, suspects
 from planner_reactor.planner.explaining import Explanation, explain, unrecorded
 from planner_reactor.planner.forecast import Forecast
 from planner_reactor.planner.foresight import Foresight
-from planner_reactor.planner.goals import chosen_goal, must_follow, with_fact
+from planner_reactor.planner.goals import chosen_goal, must_follow, pursued, with_fact
 from planner_reactor.planner.issuing import Issuer
 from planner_reactor.planner.model import Model
 from planner_reactor.planner.reducing import Reducer
@@ -81,7 +81,7 @@ class Planner:
         self._withheld: dict[int, str] = {}
         self._reducer = Reducer(Theory(domain), self.model, self._issuer, self._assuming, self._counts)
         self._reducer.sizing = Sizing.within(response_ms)
-        for name in dict.fromkeys((self.goal, *(g.name for g in domain.goals.values() if g.kept))):
+        for name in pursued(domain, self.goal):
             self._reducer.pursue(name)
         self._foresight = Foresight(self._reducer) if foresight else None
         self._standing = Standings()

@@ -123,9 +123,14 @@ def stub(situation: Situation, lettering: Lettering, period_ms: int) -> Process:
     return Loop(Call("SIT", (name,), (INSTANCE, *parameters)), body)
 
 
-def root(situation: Situation, names: Names) -> Process:
-    """`STOP :; ASSERT[s]`: the goal, asserted for ever (P0)."""
-    return Loop(STOP, Call("ASSERT", (Symbol(names[situation]),)))
+def root(situation: Situation, names: Names, instead: tuple[Situation, ...] = ()) -> Process:
+    """`STOP :; ASSERT[s]`: the goal, asserted for ever (P0).
+
+    Instead of others it is `DISABLED[t] :; ASSERT[s]`, with `#` between several: while one of them is disabled.
+    """
+    disabled = tuple(Call("DISABLED", (Symbol(names[other]),)) for other in instead)
+    condition = Disable(disabled) if len(disabled) > 1 else disabled[0] if disabled else STOP
+    return Loop(condition, Call("ASSERT", (Symbol(names[situation]),)))
 
 
 def monitor(kind: str, assumption: str, period_ms: int) -> Process:

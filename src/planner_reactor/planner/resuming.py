@@ -156,7 +156,7 @@ class Resumption:
         model = self.reducer.model
         for root in list(self.reducer.starts):
             if root in model.segments:
-                text = show(reactions.root(root, model.names))
+                text = show(reactions.root(root, model.names, model.instead.get(root, ())))
                 label = next((n for n, found in self._reactions.texts.items() if found == text), None)
                 del self.reducer.starts[root]
                 model.roots[root] = label
