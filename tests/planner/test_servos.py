@@ -109,6 +109,7 @@ def impossible(text: str, *without: str) -> bool:
 
 def test_actions_that_keep_each_other_going_must_have_something_to_begin_with() -> None:
     assert impossible(RING, "Calm")
+    assert impossible(RING + "atp_fact Lit(other);", "Calm")
     assert not impossible(RING + "atp_fact Lit(x);", "Calm")
 
 
