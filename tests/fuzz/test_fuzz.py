@@ -11,11 +11,11 @@ from typing import Any
 import msgspec
 import pytest
 
-from planner_reactor.errors import InputError
+from planner_reactor.errors import DomainError, InputError
 from planner_reactor.link.codec import decode
 from planner_reactor.link.messages import Adaptation
 from planner_reactor.link.session import Session
-from planner_reactor.logic.reader import check_domain
+from planner_reactor.logic.reader import check_domain, read_domain
 from planner_reactor.reactor.journal import HEADER, Journal
 from planner_reactor.rs.checks import check_text
 from tests.fuzz.messages import framed_content, in_arrays
@@ -106,6 +106,14 @@ def test_what_is_nested_deeply_is_looked_at_once() -> None:
     """The check of guardedness asked every level about all that is below it."""
     calls = [calls_of(f"T = {'if ' * depth}STOP{' then STOP else STOP' * depth}") for depth in (40, 80)]
     assert calls[1] < 2.5 * calls[0]
+
+
+@pytest.mark.parametrize(
+    "text", ["atp_assumption A() monitor flag {};", "atp_fact P({});", "atp_resource r capacity {};"]
+)
+def test_a_number_beyond_all_measure_is_refused(text: str) -> None:
+    with pytest.raises(DomainError, match="a number with 5000 digits"):
+        read_domain(text.format("9" * 5_000))
 
 
 @pytest.mark.parametrize("line", ["executability: Before(x) @ i1 and ITL(i1, encompasses, Act);", "intervals i1;",

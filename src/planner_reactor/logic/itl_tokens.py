@@ -14,6 +14,8 @@ from planner_reactor.errors import Diagnostic, DomainError, Place
 
 DEPTH_LIMIT = 100
 """How deep brackets may be nested."""
+DIGITS_LIMIT = 30
+"""How long a number may be."""
 TEXT_LIMIT = 4_000_000
 """Longest domain text that is read, in characters."""
 
@@ -86,6 +88,10 @@ def tokens(source: Source) -> list[Token]:
         elif kind == "other":
             hint = "comments begin with //" if text in "#%" else ""
             raise DomainError([source.diagnostic(offset, "stray-sign", f"{text!r} has no meaning in a domain", hint)])
+        elif kind == "number" and len(text) > DIGITS_LIMIT:
+            message = f"a number with {len(text)} digits"
+            hint = f"expected at most {DIGITS_LIMIT}"
+            raise DomainError([source.diagnostic(offset, "too-large", message, hint)])
         found.append(Token(kind, text, offset))
         if kind == "end":
             break

@@ -34,12 +34,13 @@ class Scope:
         self.variables: dict[str, int] = {}
         self.intervals: dict[str, bool] = {TIME: True}  # name -> used
         self._wrong = wrong
+        self._found: set[tuple[int, str, str]] = set()  # one finding for each place
         self._constants = constants
 
     def finding(self, name: Name, code: str, message: str, hint: str = "", *, severity: str = "error") -> None:
-        found = self.source.diagnostic(name.offset, code, message, hint, severity=severity)
-        if found not in self._wrong:
-            self._wrong.append(found)
+        if (name.offset, code, message) not in self._found:
+            self._found.add((name.offset, code, message))
+            self._wrong.append(self.source.diagnostic(name.offset, code, message, hint, severity=severity))
 
     def declare(self, names: Iterable[Name], what: str = "variable") -> tuple[int, ...]:
         """Number some variables; a name declared twice is an error."""
