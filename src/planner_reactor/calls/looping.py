@@ -20,6 +20,7 @@ from planner_reactor.calls.hosts import HostMaker, HostSource, find_host
 from planner_reactor.calls.inputs import names_in, one_of, read_text, seconds, whole
 from planner_reactor.calls.outputs import Outputs
 from planner_reactor.errors import InputError
+from planner_reactor.experiments.advice import Adviser
 from planner_reactor.experiments.loop import Loop, summary
 from planner_reactor.experiments.replay import check_replay
 from planner_reactor.experiments.runs import planner_time
@@ -43,9 +44,11 @@ class LoopOptions(TypedDict, total=False):
     """What `loop` and `kit` have in common; every one may be left out.
 
     `trays`: how many kits (or whatever the host counts) to complete; `seed`; `kit`: the file of another kit;
-    `faults`: a file of faults; `until`: seconds; `cell`: "events"; `clock`: "virtual" or "wall"; `planner`:
-    "inline"; `planner_time`: seconds charged for each step of the planner, "measured" or "papers"; `mode`: "drain",
-    "wait" or "versions"; `verify`: verify every adaptation before it is issued; `relax`: "all", "none", or assumptions;
+    `faults`: a file of faults; `goals`: a file of what management says meanwhile (`experiments.advice`); `until`:
+    seconds; `cell`: "events"; `clock`: "virtual" or "wall"; `planner`: "inline"; `planner_time`: seconds charged for
+    each step of the planner, "measured" or "papers"; `mode`: "drain", "wait" or "versions"; `verify`: verify every
+    adaptation before it is issued; `response_ms`: time that may go into one adaptation; `relax`: "all", "none", or
+    assumptions;
     `trace`: a file `*.jsonl` to write; `figures`: a directory to draw into;
     `conform`: hold every step against the semantics (`conforming`); `watch`: is given the `Loop` before it runs;
     `told`: is given each warning, a line.
@@ -55,6 +58,7 @@ class LoopOptions(TypedDict, total=False):
     seed: int
     kit: str | Path | None
     faults: str | Path | None
+    goals: str | Path | None
     until: float | None
     cell: str
     clock: str
@@ -62,6 +66,7 @@ class LoopOptions(TypedDict, total=False):
     planner_time: float | str
     mode: str
     verify: bool
+    response_ms: float | None
     relax: str | tuple[str, ...]
     trace: str | Path | None
     figures: str | Path | None
@@ -77,6 +82,8 @@ class _Options(msgspec.Struct, frozen=True, kw_only=True):
     seed: int = 0
     kit: str | Path | None = None
     faults: str | Path | None = None
+    goals: str | Path | None = None
+    response_ms: float | None = None
     until: float | None = None
     cell: str = "events"
     clock: str = "virtual"
@@ -131,7 +138,7 @@ def loop(
 
 
 def _run(text: str, file: str, host: HostSource, goal: str | None, given: _Options) -> dict[str, Any]:
-    made, faults = _prepared(text, file, host, goal, given)
+    made, faults, adviser = _prepared(text, file, host, goal, given)
     with Outputs(given.trace, given.figures) as outputs:
         outputs.attach(made.trace)
         if given.clock == "wall":
@@ -144,15 +151,17 @@ def _run(text: str, file: str, host: HostSource, goal: str | None, given: _Optio
         made.run(until=given.until)
         # a host of our own is simulation alone; what another one would do twice we cannot know
         if host == KITTING_HOST and given.clock == "virtual" and made.planner_time.deterministic:
-            again, _ = _prepared(text, file, host, goal, replace(given, told=lambda line: None))
+            again, *_ = _prepared(text, file, host, goal, replace(given, told=lambda line: None))
             check_replay(made, again, until=given.until)
     held = {"conformance": monitor.report()} if monitor is not None else {}
-    return {**_came_to(made, faults, given), "figures": outputs.drawn, **held}
+    for why in adviser.refused:
+        given.told(f"not done: {why}")
+    return {**_came_to(made, faults, given), "refused_advice": adviser.refused, "figures": outputs.drawn, **held}
 
 
 def _prepared(
     text: str, file: str, host: HostSource, goal: str | None, given: _Options
-) -> tuple[Loop, FaultSchedule | None]:
+) -> tuple[Loop, FaultSchedule | None, Adviser]:
     """Everything that was given, read, checked and put together; nothing has happened yet."""
     kit_spec = kit_from(read_text(given.kit), file=str(given.kit)) if given.kit is not None else None
     if kit_spec is not None:
@@ -160,7 +169,7 @@ def _prepared(
     fault_text = read_text(given.faults) if given.faults is not None else None
     planner = Planner(
         read_domain(text, file=file), goal=goal, relax=_relaxed(given.relax), mode=cast(Mode, given.mode),
-        verify=given.verify,
+        verify=given.verify, response_ms=given.response_ms,
     )  # fmt: skip
     maker = find_host(host)
     _expect(maker, given, kit_spec)
@@ -181,8 +190,16 @@ def _prepared(
         keep_trace=given.figures is not None,
     )
     faults = _schedule(made, fault_text, str(given.faults))
+    adviser = _advised(made, text, file, given.goals)
     _expect_an_end(made, given)
-    return made, faults
+    return made, faults, adviser
+
+
+def _advised(made: Loop, text: str, file: str, goals: str | Path | None) -> Adviser:
+    adviser = Adviser(made, text, file, folder=Path(goals).parent if goals is not None else None)
+    if goals is not None:
+        adviser.schedule(adviser.read(read_text(goals), file=str(goals)))
+    return adviser
 
 
 def _relaxed(relax: str | tuple[str, ...]) -> Any:

@@ -33,6 +33,13 @@ Kit: TypeAlias = Annotated[
 Faults: TypeAlias = Annotated[
     Path | None, typer.Option("--faults", metavar="FILE.toml", help="What goes wrong in the world, and when.")
 ]
+Goals: TypeAlias = Annotated[
+    Path | None, typer.Option("--goals", metavar="FILE.toml", help="What management says while it runs, and when.")
+]
+Response: TypeAlias = Annotated[
+    float | None,
+    typer.Option("--response", metavar="MS", help="Time that may go into one adaptation [default: the least]."),
+]
 CellName: TypeAlias = Annotated[
     str, typer.Option("--cell", metavar="events|physics|camera", help="How the workcell is simulated.")
 ]

@@ -1,7 +1,7 @@
 """Resources: of steps that together would take too much, not all can go on at once (R §7.1, §7.2: resource use).
 
 Steps of one plan that share a resource take turns. In which order follows from a schedule by their durations, so that
-a camera looks for the next thing while an arm still places this one: each step as soon as it can, of several the one
+the next thing is looked for while this one is still being placed: each step as soon as it can, of several the one
 with the most to come after it. If that lasts longer than what no order could avoid, other orders of those that compete
 are tried, up to `TRIES`, and the shortest is kept. A resource is so many tracks; who follows whom on a track is a
 *turn*: an order of the plan that nothing but a resource asks for.

@@ -17,7 +17,7 @@ from planner_reactor.workcell.arm import FIXED, OPPORTUNE, Arm
 from planner_reactor.workcell.calibration import Calibration
 from planner_reactor.workcell.downstream import Verdict
 from planner_reactor.workcell.evidence import Evidence
-from planner_reactor.workcell.kit import KitSpec
+from planner_reactor.workcell.kit import KitSpec, PartKind
 from planner_reactor.workcell.memory import Memory, PartRecord, TrayRecord
 from planner_reactor.workcell.plant import Plant
 from planner_reactor.workcell.sensors import Glimpse, Sensors
@@ -41,6 +41,7 @@ class Cell:
         self.memory = Memory(self.kit, self.calibration)
         self.evidence = Evidence(self.scheduler, self.calibration.quiet_s, plant.trace)
         self.watch = TrayWatch(self.sensors, self.memory, self.evidence, self.kit, self.scheduler)
+        self._downstream = plant.downstream
         self.arm = Arm(plant, self.memory, in_sight=self.in_sight)
         self.arrivals = {kind: Signal(f"{kind} seen") for kind in self.kit.kinds}
         self.refilled: Signal = plant.refilled
@@ -57,6 +58,15 @@ class Cell:
         plant.downstream.answer = self._answered
         plant.downstream.told = self._ready_line
 
+    def part(self, kind: str) -> PartKind:
+        """What is ordered of a kind; what the belt brings of it, if none is."""
+        return self._downstream.expected.by_kind.get(kind) or self.kit.by_kind[kind]
+
+    @property
+    def ordered(self) -> tuple[str, ...]:
+        """The kinds of which a kit is made now."""
+        return self._downstream.expected.kinds
+
     def look(self, kind: str) -> bool:
         """Take a picture and remember what is in it; False without a picture."""
         glimpses = self.sensors.look(kind)
@@ -64,7 +74,7 @@ class Cell:
             self.evidence.note("camera")
             return False
         self.watch.glance()
-        wanted = self.kit.by_kind[kind].wanted
+        wanted = self.part(kind).wanted
         for record in self.memory.see_all(kind, glimpses, self.scheduler.now):
             self._judge_variant(record, wanted)
         return True
@@ -124,7 +134,7 @@ class Cell:
         record = self.memory.see(glimpse, now)
         self.watch.glance()
         self._came(glimpse.kind, now)
-        self._judge_variant(record, self.kit.by_kind[glimpse.kind].wanted)
+        self._judge_variant(record, self.part(glimpse.kind).wanted)
         self.arm.noticed(glimpse.kind)
         self.arrivals[glimpse.kind].fire()
 

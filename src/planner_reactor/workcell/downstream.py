@@ -7,6 +7,7 @@ reasons but without causes. The causes (numbers of faults) are for the record of
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable
 
 import msgspec
@@ -14,10 +15,10 @@ import msgspec
 from planner_reactor.runtime.scheduler import Scheduler
 from planner_reactor.runtime.signals import Signal
 from planner_reactor.workcell.calibration import Calibration
-from planner_reactor.workcell.kit import KitSpec
+from planner_reactor.workcell.kit import KitSpec, PartKind
 from planner_reactor.workcell.things import Part, Tray
 
-REASONS = ("refused", "missing", "bad", "damaged", "wrong variant", "wrong kind", "damaged tray")
+REASONS = ("refused", "missing", "bad", "damaged", "wrong variant", "wrong kind", "surplus", "damaged tray")
 
 
 class Verdict(msgspec.Struct, frozen=True):
@@ -51,9 +52,22 @@ class Downstream:
         self.answer: Callable[[Verdict], None] = lambda verdict: None
         self.told: Callable[[bool], None] = lambda ready: None
         self._reserved_until = -1.0
-        self._kit = kit
+        self.accepted: Callable[[KitSpec], None] = lambda kit: None
+        self.made: Counter[str] = Counter()  # kits by what was ordered
+        self._orders: list[KitSpec] = [kit]  # the newest first; the others are taken until the newest comes
+        self._beside: tuple[KitSpec, ...] = ()
         self._calibration = calibration
         self._scheduler = scheduler
+
+    @property
+    def expected(self) -> KitSpec:
+        """What is ordered now."""
+        return self._orders[0]
+
+    def expect(self, kit: KitSpec, *, beside: tuple[KitSpec, ...] = ()) -> None:
+        """This is ordered from now on; what is ordered `beside` it is taken too, for as long as that is so."""
+        self._orders = [kit, *(other for other in self._orders if other != kit)]
+        self._beside = beside
 
     def block(self, mark: int) -> None:
         """Stop taking trays (but keep a promise)."""
@@ -77,9 +91,9 @@ class Downstream:
         """A tray is pushed out: refused and lost if blocked, else judged. The verdict is told later."""
         now = self._scheduler.now
         if not self.ready and now > self._reserved_until:
-            faulty: list[tuple[str, tuple[int, ...]]] = [("refused", self.blocked_by)]
+            kit, faulty = self.expected, [("refused", self.blocked_by)]
         else:
-            faulty = self._faults(tray)
+            kit, faulty = self._judged(tray)
         self._reserved_until = -1.0
         reasons = tuple(dict.fromkeys(reason for reason, _ in faulty))
         verdict = Verdict(tray.tag, not faulty, reasons)
@@ -88,6 +102,8 @@ class Downstream:
             self.rejections.append(Rejection(now, tray.number, reasons, causes))
         else:
             self.completed += 1
+            self.made["+".join(kit.order)] += 1
+            self.accepted(kit)
         self._scheduler.call_after(self._calibration.verdict_s, lambda: self.answer(verdict))
         return verdict
 
@@ -95,24 +111,34 @@ class Downstream:
         self.told(self.ready)
         self.changed.fire(self.ready)
 
-    def _faults(self, tray: Tray) -> list[tuple[str, tuple[int, ...]]]:
+    def _judged(self, tray: Tray) -> tuple[KitSpec, list[tuple[str, tuple[int, ...]]]]:
+        """As which order it serves; if as none, what is wrong with it by the newest."""
+        for kit in (*self._orders, *self._beside):
+            if not self._faults(tray, kit):
+                if kit == self.expected:
+                    del self._orders[1:]  # nothing older can come any more
+                return kit, []
+        return self.expected, self._faults(tray, self.expected)
+
+    def _faults(self, tray: Tray, kit: KitSpec) -> list[tuple[str, tuple[int, ...]]]:
         found: list[tuple[str, tuple[int, ...]]] = []
         if not tray.good:
             found.append(("damaged tray", tray.marks))
-        for kind in self._kit.kinds:
+        found += [("surplus", part.marks) for kind, part in tray.slots.items() if kind not in kit.by_kind]
+        for kind in kit.kinds:
             part = tray.slots.get(kind)
             if part is None:
                 found.append(("missing", tray.marks))
             else:
-                found.extend((reason, part.marks) for reason in self._wrong(part, kind))
+                found.extend((reason, part.marks) for reason in self._wrong(part, kit.by_kind[kind]))
         return found
 
-    def _wrong(self, part: Part, slot: str) -> list[str]:
+    def _wrong(self, part: Part, slot: PartKind) -> list[str]:
         if part.damaged:
             return ["damaged"]
-        if part.kind != slot:
+        if part.kind != slot.kind:
             return ["wrong kind"]
         reasons = [] if part.good else ["bad"]
-        if part.variant not in self._kit.by_kind[slot].accepted:
+        if part.variant not in slot.accepted:
             reasons.append("wrong variant")
         return reasons

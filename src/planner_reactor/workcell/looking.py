@@ -27,7 +27,7 @@ class Looking:
         cell = self._cell
         if m == TRAY:
             return m
-        part = cell.kit.by_kind[cell.kind(m)]
+        part = cell.part(cell.kind(m))
         yield cell.calibration.look_s
         now = cell.scheduler.now
         if cell.spot(part.wanted) is not None:
@@ -124,7 +124,7 @@ class Looking:
         if tray is None:
             return
         view = yield from self._inspect(tray, "", seconds=cell.calibration.verify_s)
-        missing = [kind for kind in cell.kit.kinds if kind not in view.filled]
+        missing = [kind for kind in cell.ordered if kind not in view.filled]
         for kind in missing:
             self._note_missing(tray, kind)
         if missing:

@@ -207,7 +207,7 @@ class Picking:
             cell.arm.feel_empty()
             raise Aborted(f"{record.handle} slipped out of the gripper")
         cell.memory.grip(record, view.kind, view.variant)
-        if view.variant == cell.kit.by_kind[view.kind].wanted:
+        if view.variant == cell.part(view.kind).wanted:
             cell.evidence.supports("AS")
         else:
             cell.evidence.against("AS", f"a {view.kind} is {view.variant}")

@@ -16,6 +16,7 @@ from planner_reactor.runtime.scheduler import Scheduler
 from planner_reactor.workcell.arm import Arm
 from planner_reactor.workcell.disturbances import DISTURBANCES
 from planner_reactor.workcell.ledger import Finding
+from planner_reactor.workcell.orders import ORDERS, Advise, Orders
 from planner_reactor.workcell.plant import Plant
 from planner_reactor.workcell.reading import kind_name, typed
 from planner_reactor.workcell.sensors import Sensors
@@ -42,6 +43,7 @@ class World:
         self.target = target
         self.arm: Arm | None = None
         self.sensors: Sensors | None = None  # which can be made to hang
+        self._orders = Orders(plant.kit, plant)
         self.struck: list[FaultRecord] = []
         self._unsensed: list[FaultRecord] = []
 
@@ -100,6 +102,15 @@ class World:
         """Are as many kits completed as were asked for?"""
         return 0 < self.target <= self.plant.downstream.completed
 
+    @property
+    def orders(self) -> Mapping[str, Mapping[str, Any]]:
+        """Every kind of order that is taken, with its parameters and their defaults."""
+        return ORDERS
+
+    def order(self, kind: str, advise: Advise, **parameters: Any) -> None:
+        """What is ordered from now on; the planner is told by `advise` (InputError for what cannot be made)."""
+        self._orders.take(kind, advise, **parameters)
+
     def refusal(self, kind: str, parameters: Mapping[str, Any]) -> tuple[str, str, str] | None:
         """Why a fault cannot be: (key, message, hint), or None. Looks at names, types and values."""
         if kind not in DISTURBANCES:
@@ -152,6 +163,7 @@ class World:
             record.kits_lost = sum(record.number in lost.faults for lost in downstream.rejections)
         return {
             "kits": {"completed": downstream.completed, "rejected": len(downstream.rejections)},
+            **({"kits_made": dict(downstream.made)} if self._orders.given else {}),
             "parts": dict(self.ledger()),
             "trays": dict(self.trays()),
             "commands": dict(self.commands()),
