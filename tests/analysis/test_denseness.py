@@ -250,3 +250,9 @@ def test_durations_choose_where_order_is_certain() -> None:
     assert repr(greatest(a, b, 0)) == "max(a, b)"
     assert (less(a, a + b), less(a, a), less(a, b)) == (True, False, None)
     assert valued(greatest(a, b) + 1, {"a": 2, "b": 5}) == 6
+
+
+def test_lemma_5_as_printed_asks_for_the_wrong_port() -> None:
+    """The lemma says "if y is dense then x is"; but x is what the network takes, and y what it makes of it."""
+    assert "nobody writes it" in shown(ST, "ST", "x", {"y": ("gi", "ti")})
+    assert shown(ST, "ST", "y", GIVEN).startswith("(gi + go")

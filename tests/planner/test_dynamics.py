@@ -243,3 +243,32 @@ def test_a_process_may_be_given_with_its_arguments() -> None:
     assert names(derive(parse_program(TEM), parse_process("TEM[p, a]"), signatures=host.signatures)) == [
         "MOVECAMERA", "LOOK",
     ]  # fmt: skip
+
+
+# ------------------------------------------------------------------------------------------------- wrong as printed
+
+
+def test_14_as_printed_becomes_an_object_that_moves_at_random_after_one_step() -> None:
+    """`BeltObject = … : Object[p + mu]`: nothing is carried to the robot, so nothing is worth waiting for."""
+    printed = BEM.replace("BeltObject[p + mu])", "Object[p + mu])") + (
+        "Object[p] = (STREAM[op, p] # Delay[t0]) ; (Ran[-eps, eps]<g> : Object[p + g])\n"
+    )
+    assert "WAITFOROBJECT" in names(derived(BEM, "BEM"))
+    assert "WAITFOROBJECT" not in names(derived(printed, "BEM"))
+
+
+def test_moveaway_as_printed_would_move_towards() -> None:
+    """X §5.2 sends p − pr for both; what leads away is its opposite."""
+    found = derived(GEM, "GEM")
+    robot, thing = 2.0, 5.0
+    sent = thing - robot
+    assert abs(thing - (robot + sent)) < abs(thing - robot) < abs(thing - (robot - sent))
+    assert "OUT[r, v - q]" in action(found, "MOVETOWARDS").rs_text
+    assert "OUT[r, q - v]" in action(found, "MOVEAWAY").rs_text
+
+
+def test_waiting_as_printed_would_wait_for_what_has_passed() -> None:
+    """X §5.3 asks for p < ν alone; beyond the robot the distance grows with every step."""
+    wait = action(derived(BEM, "BEM", mu=0.5, nu=10), "WAITFOROBJECT")
+    assert [f.holds for f in wait.needed] == ["p < 10", "p < pr"]
+    assert abs(6.0 + 0.5 - 4.0) > abs(6.0 - 4.0)  # p = 6 < ν, pr = 4
