@@ -81,6 +81,13 @@ def test_without_another_way_the_stub_stays_and_the_reason_is_told() -> None:
     assert planner.ideal
 
 
+def test_what_is_out_of_reach_is_looked_for_behind_rules_and_actions() -> None:
+    spread = SHOP.replace("Waxed(car) @ i2 and ITL(Wax", "Spread(car) @ i2 and ITL(Wax")
+    rule = "atp_rule forall i: Spread(car) @ i and Clean(car) @ i => Waxed(car) @ i;"
+    planner, _ = planned(read_domain(spread + rule), "WAX")
+    assert planner.impossible == {"Polish": "no plan achieves Polish (nothing brings about Spread; not without WAX)"}
+
+
 def test_a_reaction_for_which_there_is_no_other_stays_as_it_is() -> None:
     planner, book = planned(read_domain(SHOP))
     before = dict(book.reactions)

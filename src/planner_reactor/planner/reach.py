@@ -81,7 +81,7 @@ def _needs(problem: Problem, predicate: str) -> list[tuple[str, ...]]:
         for schema, _ in theory.domain.producers.get(predicate, ())
         if not (schema.name in problem.forbidden or schema.cleanup) and _holds(theory.assumed(schema), relaxed)
     ]
-    return [tuple(a.predicate for a in r.body) for r in rules] + [tuple(sorted(theory.needs[s.name])) for s in schemas]
+    return [tuple(sorted(n)) for n in (*map(theory.body, rules), *(theory.needs[s.name] for s in schemas))]
 
 
 def _missing(theory: Theory, relaxed: frozenset[str], predicate: str) -> frozenset[str]:
