@@ -28,7 +28,7 @@ SEGMENTS = 1_112
 """Of 9 processes each: 10,008 in all."""
 
 MANY = 1_000_000
-SLICE = 10_000
+SLICE = 5_000
 """Swaps of one reactor; every fifth reactor is swapped from a thread."""
 
 BIN = 10

@@ -8,23 +8,31 @@ from planner_reactor.link.channels import PerceptionChannel
 from planner_reactor.link.messages import Adaptation, Change, Perception
 from planner_reactor.reactor.journal import Journal
 from planner_reactor.reactor.reactor import Reactor
-from planner_reactor.runtime import Aborted, Host, Scheduler, VirtualClock
+from planner_reactor.runtime import Aborted, Budgets, Host, Scheduler, VirtualClock
 from planner_reactor.trace import Trace
 
 
 class Bench:
     """A reactor on a virtual clock, with everything at hand that a test asks about."""
 
-    def __init__(self, *, journal: Journal | None = None, host: Host | None = None) -> None:
-        self.scheduler = Scheduler(VirtualClock(), seed=1)
+    def __init__(
+        self,
+        *,
+        journal: Journal | None = None,
+        host: Host | None = None,
+        scheduler: Scheduler | None = None,
+        budgets: Budgets | None = None,
+    ) -> None:
+        self.scheduler = scheduler or Scheduler(VirtualClock(), seed=1)
         self.trace = Trace(lambda: self.scheduler.now)
         self.flags: dict[str, bool | None] = {"A": True, "B": True}
         self.failing: set[str] = set()
         self.abandoned: list[str] = []
         self.host = host or self._host()
         self.reactor = Reactor(
-            self.scheduler, host=self.host, perceptions=PerceptionChannel(), trace=self.trace, journal=journal
-        )
+            self.scheduler, host=self.host, perceptions=PerceptionChannel(), trace=self.trace, journal=journal,
+            budgets=budgets,
+        )  # fmt: skip
         self.reactor.start()
 
     def _host(self) -> Host:
