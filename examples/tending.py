@@ -4,7 +4,7 @@
     $ planner-reactor plan examples/tending.itl --steps 1
     $ planner-reactor plan examples/tending.itl --without SHARP --steps 1
     $ planner-reactor loop examples/tending.itl --host examples/tending.py --until 3600 \
-          --faults examples/tending.toml --goals examples/tending.goals.toml --relax none
+          --faults examples/tending.toml --goals examples/tending.goals.toml --relax PLACED
 
 Every piece is counted: in the rack, in the gripper, in a chuck, on the bench, stored, or scrapped. The robot's side has
 a gripper that feels whether it holds something, switches at chucks and doors, lamps, spindle loads, a camera over the
