@@ -185,7 +185,7 @@ class Improviser:
     def _spoilt(self, sound: Adaptation) -> dict[str, Adaptation]:
         """What can be wrong with an adaptation."""
         definitions, adds, new = sound.definitions, sound.adds, self.book.next_label
-        first = adds[-1] if adds else 0
+        unknown = f"P[{new}] = Delay[5] :; Nobody\n"
         used = [n for (epoch, n), o in self.book.outcomes.items() if epoch == self.book.epoch and o == "applied"]
         bare = replace(sound, changes=(), removed=(), kills=(), adds=(), definitions="")
         return {
@@ -197,10 +197,8 @@ class Improviser:
             "absent situation": replace(sound, adds=adds[:-1], removed=("nowhere",)),
             "no text": replace(sound, definitions=definitions + "P[ = "),
             "no reaction": replace(sound, definitions=definitions + "Q[1] = STOP\n"),
-            "unknown process": replace(sound, definitions=f"P[{first}] = SIT[{NAMES[0]}]<k> :; Nobody\n"),
-            "one of a group": replace(
-                sound, definitions=f"{definitions}P[{new}] = SIT[{NAMES[0]}]<k> :; Nobody\n", adds=(*adds, new)
-            ),
+            "unknown process": replace(bare, definitions=unknown, adds=(new,)),
+            "one of a group": replace(sound, definitions=definitions + unknown, adds=(*adds, new)),
             "recursion": replace(bare, definitions=f"P[{new}] = P[{new}] | P[{new}]\n", adds=(new,)),
             "parser bomb": replace(bare, definitions=f"P[{new}] = {'(' * 3000}STOP\n", adds=(new,)),
             "served by nobody": replace(bare, definitions=f"P[{new}] = STOP :; ASSERT[elsewhere]\n", adds=(new,)),

@@ -114,12 +114,18 @@ def _replay(stage: Stage, fault: Fault) -> None:
     if stage.side is None or stage.side.session is None or not answered:
         return
     applied = [a for a in answered if stage.book.outcomes[a.epoch, a.id] == "applied"]
-    spent = stage.draw.choice(applied or answered)
-    for adaptation in (spent, stage.draw.choice(answered)):
-        stage.side.reactor.receive(adaptation)
-    before = stage.side.reactor.counts["refused"]
-    stage.side.reactor.receive(msgspec.structs.replace(spent, definitions="", adds=(), purpose="another"))
-    stage.rows["21 replays under another content refused"] += stage.side.reactor.counts["refused"] - before
+    refused = [a for a in answered if stage.book.outcomes[a.epoch, a.id] == "refused" and a.purpose != "wrong"]
+    reactor = stage.side.reactor
+    for adaptation in (stage.draw.choice(answered), *refused[-3:]):
+        reactor.receive(adaptation)
+    spent = stage.draw.choice(applied[-30:] or answered)
+    told = reactor.counts["refused"]
+    reactor.receive(spent)
+    if spent in applied and spent.epoch == reactor.journal.state.committed.epoch and reactor.counts["refused"] > told:
+        stage.watch.breach(6, f"adaptation {spent.id} was applied, comes once more, and is refused")
+    before = reactor.counts["refused"]
+    reactor.receive(msgspec.structs.replace(spent, definitions="", adds=(), purpose="another"))
+    stage.rows["21 replays under another content refused"] += reactor.counts["refused"] - before
     stage.side.session.receive(stage.draw.randbytes(40), stage.scheduler.now)
 
 
