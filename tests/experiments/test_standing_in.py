@@ -32,7 +32,7 @@ class House:
         module = importlib.util.module_from_spec(found)
         found.loader.exec_module(module)
         self.scheduler = Scheduler(VirtualClock(), seed=1)
-        host = module.host(self.scheduler)
+        self.host = host = module.host(self.scheduler)
         self.world: Any = host.world
         self.trace = Trace(lambda: self.scheduler.now)
         self.reactor = Reactor(self.scheduler, host=host, trace=self.trace)
