@@ -17,7 +17,7 @@ from planner_reactor.analysis.looking import Looking, finish
 from planner_reactor.analysis.protocols import LIMIT, Checked, Counterexample, Protocol, checking
 from planner_reactor.analysis.slicing import Slice, Sliced, apart, sliced, still_asking, unknown_names
 from planner_reactor.analysis.standing import Standing, shape
-from planner_reactor.analysis.verdicts import Environment, Verdict
+from planner_reactor.analysis.permission import Environment, Verdict
 from planner_reactor.errors import BudgetError, InputError
 from planner_reactor.rs.bounds import Bounds
 from planner_reactor.rs.configurations import Ending, Label, World

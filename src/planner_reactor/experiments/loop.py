@@ -12,7 +12,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from planner_reactor.analysis.verdicts import Environment
+from planner_reactor.analysis.permission import Environment
 from planner_reactor.errors import RefusedError
 from planner_reactor.experiments.timing import Fixed, PlannerTime
 from planner_reactor.link.channels import AdaptationChannel, PerceptionChannel

@@ -15,7 +15,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Mapping
 
-from planner_reactor.analysis.verdicts import Environment
+from planner_reactor.analysis.permission import Environment
 from planner_reactor.errors import InputError, nearest
 from planner_reactor.link.messages import Mode, Perception, Standing
 from planner_reactor.logic.diagnosis import Diagnosis

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, TypeAlias
 from msgspec.structs import replace
 
 from planner_reactor.analysis.looking import Looking, finish
-from planner_reactor.analysis.verdicts import Environment, Verdict
+from planner_reactor.analysis.permission import Environment, Verdict
 from planner_reactor.errors import RSError
 from planner_reactor.link.messages import Adaptation, Perception
 from planner_reactor.link.surgeries import surgery

@@ -11,7 +11,7 @@ from collections import Counter
 from collections.abc import Callable
 from functools import lru_cache
 
-from planner_reactor.analysis.verdicts import Environment
+from planner_reactor.analysis.permission import Environment
 from planner_reactor.link.messages import Perception, Standing
 from planner_reactor.logic.domain import Domain
 from planner_reactor.logic.reader import read_domain
