@@ -7,9 +7,12 @@ import re
 import pytest
 
 from planner_reactor.errors import InputError
+from planner_reactor.experiments.loop import Loop
 from planner_reactor.experiments.picking import Trial, begun, domain_for, one
+from planner_reactor.planner import Planner
 from planner_reactor.workcell.domains import shipped_domain, without_tracking
 from planner_reactor.workcell.faults import Fault, FaultSchedule
+from planner_reactor.workcell.host import host
 
 
 def test_the_hand_written_actions_are_gone_and_the_derived_ones_are_there() -> None:
@@ -52,6 +55,20 @@ def test_the_arm_is_never_kept_by_a_part_that_is_lost(kind: str, parameters: dic
     assert not schedule.unstruck()
     assert world.report()["kits"]["completed"] == 2  # type: ignore[index]
     assert loop.reactor.laws.violations == []
+
+
+def test_it_takes_over_where_the_hand_written_way_has_failed() -> None:
+    """AM is held at first, so that parts are placed already when it is given up."""
+    planner = Planner(domain_for("derived"), relax=())
+    loop = Loop(planner, lambda scheduler, trace: host(scheduler, target=3, servo=True, trace=trace), seed=1)
+    world = loop.host.world
+    assert world is not None
+    FaultSchedule((Fault(at=30.0, kind="part_moved", parameters={}),), world, loop.scheduler)
+    loop.run(until=200.0)
+    assert dict(planner.relaxed) == {"AM": "forced"}
+    assert world.report()["kits"]["completed"] == 3  # type: ignore[index]
+    assert "Over[" in loop.reactor.text()
+    assert (loop.reactor.laws.violations, loop.reactor.laws.interruptions) == ([], 0)
 
 
 def test_a_domain_without_track_and_get_has_none_to_replace() -> None:

@@ -38,6 +38,7 @@ sense1 = (Eye<v> ; Delay[gl]) :; (STREAM[s1, v] # Delay[tl])
 joint = (Where<v> ; Delay[gj]) :; (STREAM[j, v] # Delay[tj])
 touch = (Felt<v> ; Delay[gto]) :; (STREAM[t, v] # Delay[tto])
 move = IN[r]<d> :; Step[d]
+settled = OUT[t, 1] # Delay[tto]
 """
 GLANCE_S = 0.05
 STRIDE_M = 0.08
@@ -134,9 +135,15 @@ class Servo:
     # -- the processes
 
     def over(self, x: str) -> Steps[None]:
-        """Over[x]: wait for the turn, and go over the part, where it was last seen, or over the stack of trays."""
+        """Over[x]: wait for the turn, and go over the part, where it was last seen, or over the stack of trays.
+
+        What is held or placed already needs no reaching: that is told as a contact, while nobody else waits for one.
+        """
         cell = self._cell
         if self._is_done(x):
+            while self._turn is not None:
+                yield GLANCE_S
+            self._executer.start("settled")
             return
         record = cell.memory.trays.get(x) or cell.memory.parts.get(x)
         if record is None or record.state not in ("belt", "stack"):
