@@ -6,7 +6,7 @@ BIN    := $(VENV)/bin
 PIP    := $(BIN)/python -m pip --disable-pip-version-check install --quiet --constraint constraints.txt
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test check figures bench docs conformance laws mutants fuzz crashes damage soak swaps nets chaos defects schedules clean
+.PHONY: help demo test check figures bench docs conformance laws mutants fuzz crashes damage soak swaps nets chaos defects schedules clean denseness
 
 help:  ## list the targets
 	@grep -hE '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## */  make \1\t/' | expand -t 22
@@ -57,6 +57,9 @@ swaps: $(VENV)/dev.done  ## a million swaps of segments in a running reactor of 
 
 nets: $(VENV)/dev.done  ## a thousand random nets, each also searched by SPIN (half an hour; needs spin and gcc)
 	SPIN_NETS=1000 $(BIN)/python -m pytest -q -s tests/analysis/test_networks.py -k each_random_net
+
+denseness: $(VENV)/dev.done  ## 100,000 random timed runs against the bounds of denseness; goes on where it stopped
+	nice -n 10 $(BIN)/python -m tests.analysis.timed_runs
 
 chaos: $(VENV)/dev.done  ## ten minutes of faults on two processes, inside adaptations too; goes on where it stopped
 	nice -n 10 $(BIN)/python -m planner_reactor.simulation

@@ -19,8 +19,8 @@ GENERAL_ROOMS = ("rs", "analysis", "runtime", "reactor", "logic", "planner", "li
 KITTING = re.compile(
     r"kitting|workcell|\b(tray|trays|kit|kits|belt|gripper|conveyor|motor|cap|arm|camera|part_kind)s?\b"
 )
-ORDINARY = {"runtime": {"arm"}}
-"""Words of the trade that only look like kitting: to arm a queue."""
+ORDINARY = {"runtime": {"arm"}, "analysis": {"motor"}, "planner": {"motor"}}
+"""Words of the trade that only look like kitting: to arm a queue; sensory and motor processes (X §3.3)."""
 EMPTY_NAMES = re.compile(r"(manager|handler|helper|utils|common)", re.IGNORECASE)
 
 

@@ -5,7 +5,7 @@ of which reads a port that the environment writes (a sensory process), or writes
 It is found from the ports; nothing is known by its name.
 
 A port carries a quantity: what its writer offers, in terms of the parameters of the network, traced back through every
-value that was taken on the way. `pos` carries p because Camera took it from `op`, where Object offers p.
+value that was taken on the way. `pos` of X §5.1 carries p: its writer took it from `op`, where Object offers it.
 """
 
 from __future__ import annotations

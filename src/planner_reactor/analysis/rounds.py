@@ -5,8 +5,9 @@ values. Whatever is not a port is hidden: a delay is time, a test that lets the 
 that is drawn is an unknown with bounds. The definitions of denseness (Definitions 1, 2 and 4, Lemma 5, Theorem 6)
 are claims about rounds, so that a shape is recognised by what it does, however it is written.
 
-A round may hold a process that never ends by itself and is cut when the round goes on, such as the Monitor of a
-Camera: its rounds are `inner` ones, cut by what the phase waits for. What `::` spawns stands in `spawned`.
+A round may hold a process that never ends by itself and is cut when the round goes on, such as a Monitor
+that runs beside a reading: its rounds are `inner` ones, cut by what the phase waits for. What `::` spawns stands in
+`spawned`.
 
 Legend: low, high: least and greatest seconds of a phase, waiting for partners left out.
 """

@@ -10,7 +10,7 @@ itself (γr, τr)-dense. Checked, each with both sides in seconds and the proces
     covers        what the environment can change while the loop goes round once is less than what the sensor covers:
                   the paper assumes this (saturation and lost coverage are excluded)
 
-The paper's constraints look at the reaction alone. A sensor that a write begins anew (X §5.1: Camera at `angle`) needs
+The paper's constraints look at the reaction alone. A sensor that a write begins anew (X §5.1, at `angle`) needs
 its time undisturbed, `restart`; γe of a port that is written is this time, and the loop is as long as the reaction and
 the restart together. The longest loop counts the values that a STREAM hands over more than once: each is written too.
 """

@@ -40,7 +40,7 @@ from planner_reactor.rs.unknowns import Unknown
 from planner_reactor.rs.vocabulary import Signature
 
 FIRST_NUMBER = 54
-"""The paper's prototype was at this number when it printed camera-55 and reportpos-57."""
+"""The paper's prototype was at this number when it printed the two schemas of X §6.3: reportpos-57 is the second."""
 
 
 class Rejected(msgspec.Struct, frozen=True):

@@ -28,7 +28,7 @@ Role: TypeAlias = Literal["report", "signal", "contact", "set", "rise", "fall", 
 class Fact(msgspec.Struct, frozen=True):
     """What holds: of a subject, or (`carries`) of the value at a port. `holds` is a comparison, written out.
 
-    `about` are the quantities of which it is said, where the subject alone does not tell (two cameras, two axes).
+    `about` are the quantities of which it is said, where the subject alone does not tell (two sensors, two axes).
     """
 
     predicate: str
@@ -117,7 +117,7 @@ class Model(msgspec.Struct, frozen=True, dict=True):
 
     @cached_property
     def ambiguous(self) -> frozenset[tuple[str, str]]:
-        """What is said of one subject in several ways: by two cameras, or on two axes."""
+        """What is said of one subject in several ways: by two sensors, or on two axes."""
         found: dict[tuple[str, str], set[tuple[Any, ...]]] = {}
         for limit, condition in self.sensory():
             for atom in condition:
