@@ -17,6 +17,7 @@ import msgspec
 
 from planner_reactor.errors import RefusedError
 from planner_reactor.link.messages import Adaptation
+from planner_reactor.reactor.committed import Committed
 from planner_reactor.reactor.migrating import refuse_lost_arguments
 from planner_reactor.reactor.preparing import Prepared
 from planner_reactor.reactor.reactions import Reactions
@@ -34,6 +35,24 @@ class Standing(msgspec.Struct, frozen=True):
     epoch: int
     used_labels: Collection[int]
     functions: Mapping[str, Callable[..., Value]]
+
+
+def standing_of(
+    committed: Committed,
+    reactions: Mapping[int, Reaction],
+    pending: Collection[str],
+    functions: Mapping[str, Callable[..., Value]],
+) -> Standing:
+    """What is committed and runs, while these situations are being changed."""
+    return Standing(
+        reactions=reactions,
+        versions=committed.versions,
+        pending=pending,
+        taken=committed.taken,
+        epoch=committed.epoch,
+        used_labels=range(committed.highest_label + 1),
+        functions=functions,
+    )
 
 
 MODES = ("drain", "wait", "versions")

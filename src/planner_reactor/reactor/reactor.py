@@ -18,7 +18,7 @@ from planner_reactor.link.channels import PerceptionChannel
 from planner_reactor.link.messages import Adaptation, Enquiry, PerceptionKind
 from planner_reactor.link.messages import Standing as Told
 from planner_reactor.reactor.adaptation import Transaction, Transactions
-from planner_reactor.reactor.admission import Standing, examine, is_text
+from planner_reactor.reactor.admission import examine, is_text, standing_of
 from planner_reactor.reactor.assumptions import Assumptions
 from planner_reactor.reactor.built_ins import BuiltIns
 from planner_reactor.reactor.composition import undone
@@ -157,7 +157,10 @@ class Reactor:
                 raise RefusedError("text", "it holds characters that are no text, or numbers beyond 64 bits")
             if self.halted:
                 raise RefusedError("halted", "the reactor is halted, expected a reset first")
-            prepared = examine(lambda: before or self.prepare(adaptation), adaptation, self._standing())
+            stands = standing_of(
+                self.journal.state.committed, self.reactions, self.transactions.pending_situations, self.host.functions
+            )
+            prepared = examine(lambda: before or self.prepare(adaptation), adaptation, stands)
             killed = tuple([self.reactions[label] for label in adaptation.kills])
             self.transactions.examine(adaptation, killed, self.reactions, self.situations.disabled_by)
             bound = self.bound(adaptation)
@@ -216,18 +219,6 @@ class Reactor:
         """Seconds in which the adaptation will have been applied (R §5.5, *bounded*)."""
         limits = {name: process.limit for name, process in self.host.processes.items()}
         return bound_of(adaptation, self.reactions, self.vocabulary.signatures, limits)
-
-    def _standing(self) -> Standing:
-        committed = self.journal.state.committed
-        return Standing(
-            reactions=self.reactions,
-            versions=committed.versions,
-            pending=self.transactions.pending_situations,
-            taken=committed.taken,
-            epoch=committed.epoch,
-            used_labels=range(committed.highest_label + 1),
-            functions=self.host.functions,
-        )
 
     def _root_ended(self, root: Root) -> None:
         self.situations.root_ended(root)
