@@ -147,6 +147,7 @@ class Refining(msgspec.Struct, eq=False):
         self.numbered += len(plan.steps)
         self.plans.append((problem, plan))
         self._count(problem, plan)
+        self._look_at_lasting(problem, plan)
         self.outputs.append(tuple(plan.bindings.walk(term) for term in problem.outputs))
         otherwise: dict[int, Tree] = {}
         for step in plan.steps:
@@ -160,6 +161,22 @@ class Refining(msgspec.Struct, eq=False):
             self._look_after(problem, after, step)
         tree = arrange(plan, otherwise)
         return as_long_as_asked(tree) if problem.maintained else tree
+
+    def _look_at_lasting(self, problem: Problem, plan: Plan) -> None:
+        """What finishes time (13), once it is reached, must not be ended when the goal is pursued again."""
+        goal = self.theory.domain.goals.get(self.schema.name)
+        if goal is None or not problem.enduring:
+            return
+        lasting = {atom.predicate for atom, lasts in zip(goal.consequent, goal.lasting, strict=True) if lasts}
+        for atom in map(plan.bindings.ground, problem.goals):
+            known = all(isinstance(argument, str | Numeral) for argument in atom.arguments)
+            if atom.predicate in lasting and known:  # of other things it is said anew each time
+                self.warnings += [
+                    f"{atom} in {goal.name} is to hold to the end of time, and {step.schema.name} ends it whenever the "
+                    f"goal is pursued again"
+                    for step in plan.steps
+                    if Threats(problem, plan).ends(step, atom)
+                ]
 
     def _count(self, problem: Problem, plan: Plan) -> None:
         """Note the assumptions on which the plan rests, and those that it only brings in."""
