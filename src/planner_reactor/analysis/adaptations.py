@@ -14,10 +14,10 @@ from math import inf, isinf
 
 from planner_reactor.analysis.forms import Known
 from planner_reactor.analysis.looking import Looking, finish
+from planner_reactor.analysis.permission import Environment, Verdict
 from planner_reactor.analysis.protocols import LIMIT, Checked, Counterexample, Protocol, checking
 from planner_reactor.analysis.slicing import Slice, Sliced, apart, sliced, still_asking, unknown_names
 from planner_reactor.analysis.standing import Standing, shape
-from planner_reactor.analysis.permission import Environment, Verdict
 from planner_reactor.errors import BudgetError, InputError
 from planner_reactor.rs.bounds import Bounds
 from planner_reactor.rs.configurations import Ending, Label, World
