@@ -17,6 +17,7 @@ from planner_reactor.cli.application import NAME
 from planner_reactor.cli.later import LATER
 from planner_reactor.logic import itl_syntax
 from planner_reactor.rs import grammar, states
+from tests.defects.telling import defects_table, harmless_table
 from tests.laws.telling import laws, non_laws
 from tests.mutants.telling import mutants_table
 from tests.simulation.telling import counters_table, figures
@@ -149,8 +150,10 @@ def _property_words() -> str:
 MADE: Mapping[str, Callable[[], str]] = {
     "chaos": figures,
     "counters": counters_table,
+    "defects": defects_table,
     "examples": _examples,
     "grammar": lambda: _indented_in(grammar),
+    "harmless": harmless_table,
     "imports": _imports,
     "itl_grammar": lambda: _indented_in(itl_syntax),
     "later": _later,
