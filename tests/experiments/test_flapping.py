@@ -8,7 +8,7 @@ from __future__ import annotations
 from planner_reactor.runtime import Caution
 from tests.experiments.test_standing_in import TEXT, House
 
-SECONDS, HOLD_OFF = 400.0, 30.0
+SECONDS, HOLD_OFF = 240.0, 20.0
 A_CHANGE = 2
 """Adaptations that a change of mind costs in the greenhouse at most: of the plants' reactions, and of monitors."""
 
