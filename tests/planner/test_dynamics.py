@@ -245,6 +245,35 @@ def test_a_process_may_be_given_with_its_arguments() -> None:
     ]  # fmt: skip
 
 
+def test_where_the_world_stands_now_makes_no_difference() -> None:
+    by_name, by_number = derived(BEM, "BEM"), derived(BEM, "BEM[0.0, 1, 7]")
+    assert [a.printed for a in by_name.actions] == [a.printed for a in by_number.actions]
+    fixed = TEM.replace("TEM[p, a] = Object[p] | Camera[a]", "TEM = Object[3] | Camera[0]")
+    assert names(derived(fixed, "TEM")) == ["MOVECAMERA", "LOOK"]
+
+
+def test_a_tank_and_its_valve() -> None:
+    """A domain nobody here has seen: the level is told under no condition, the valve is set, the leak drifts."""
+    found = derived(
+        "Tank[l, v] = Water[l] | Valve[v]\n"
+        "Water[l] = (STREAM[level, l] # Delay[t0]) ; (IN[flow]<f> : Water[l + f - leak])\n"
+        "Valve[v] = (STREAM[flow, v] # IN[set]<nv>) : Valve[nv]\n"
+        "gauge = (IN[level]<v> ; Delay[gl]) :; (STREAM[reading, v] # Delay[tl])\n"
+        "handle = (IN[turn]<v> ; Delay[gm]) :; (STREAM[set, v] # Delay[tm])\n",
+        "Tank",
+    )
+    assert names(found) == ["MOVEVALVE", "READWATER"]
+    assert action(found, "READWATER").schema.executability == ()
+    assert action(found, "READWATER").schema.effects[0].atom == Atom("WaterPosition", (0,))
+
+
+def test_two_objects_at_one_port_are_refused_with_the_rule() -> None:
+    """X §4.2: only one process may transmit to a port. Whose position would LOOK tell?"""
+    found = derived(TEM.replace("TEM[p, a] = Object[p]", "TEM[p, q, a] = Object[p] | Object[q]"), "TEM")
+    assert "LOOK" not in names(found)
+    assert any("Object, Object all write it, expected one writer" in r.why for r in found.rejected)
+
+
 # ------------------------------------------------------------------------------------------------- wrong as printed
 
 

@@ -218,8 +218,8 @@ class Netlist:
         writers = self.writers(port)
         if len(writers) != 1:
             names = ", ".join(map(self.name, writers))
-            why = "nobody writes it" if not writers else f"all of {names} write it, expected one writer per port"
-            return Failure(port, names or "the world outside", why if writers else f"does not write it: {why}")
+            why = "all write it, expected one writer (X §4.2)" if writers else "does not write it: nobody writes it"
+            return Failure(port, names or "the world outside", why)
         found = self.rounds(writers[0])
         if isinstance(found, Irreducible):
             why = f"has rounds that cannot be told: {found.why}: {show(found.process)}"

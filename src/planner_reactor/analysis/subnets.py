@@ -175,7 +175,7 @@ def _bindings(body: Process, parts: list[Process], world: World) -> Iterator[tup
     assert isinstance(body, Par)
     for pattern, part in zip(body.parts, parts, strict=True):
         if isinstance(pattern, Call) and isinstance(part, Call) and pattern.name == part.name:
-            for argument, given in zip(pattern.arguments, part.arguments, strict=True):
+            for argument, given in zip(pattern.arguments, part.arguments, strict=False):
                 if isinstance(argument, Variable):
                     yield argument.name, evaluate(given, {}, world.functions)
 

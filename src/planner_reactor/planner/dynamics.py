@@ -26,7 +26,7 @@ from planner_reactor.analysis.conditions import text as condition_text
 from planner_reactor.analysis.denseness import Denseness, Failure, Netlist, asked, opened
 from planner_reactor.analysis.interface import Connector, carried, interface, sensors
 from planner_reactor.analysis.limits import Limit, limit_set
-from planner_reactor.analysis.subnets import subnet, traffic
+from planner_reactor.analysis.subnets import network, subnet, traffic
 from planner_reactor.errors import InputError, nearest
 from planner_reactor.planner.exploiting import of_drift, of_motor, of_sensor
 from planner_reactor.planner.exploiting_text import DerivedAction, written
@@ -35,8 +35,8 @@ from planner_reactor.rs.configurations import World
 from planner_reactor.rs.given import constant
 from planner_reactor.rs.parser import parse_process
 from planner_reactor.rs.printer import show
-from planner_reactor.rs.terms import Call, Par, Parameter, Process, Program, calls
-from planner_reactor.rs.unknowns import Unknown
+from planner_reactor.rs.terms import Call, Expression, Number, Par, Parameter, Process, Program, Symbol, calls
+from planner_reactor.rs.unknowns import Symbolic, Unknown
 from planner_reactor.rs.vocabulary import Signature
 
 FIRST_NUMBER = 54
@@ -136,7 +136,31 @@ def _environment(environment: Process | str, world: World, given: Mapping[str, A
         if not call.arguments and (head := clauses[0].head) and process == call:
             own = tuple(constant(Unknown(h.name, -1) if isinstance(h, Parameter) else h.value) for h in head)
             return replace(call, arguments=own)
-    return asked(process, world, given)
+    return _lifted(asked(process, world, given), world)
+
+
+def _lifted(process: Process, world: World) -> Process:
+    """Numbers at which components begin are unknowns: what can be done does not depend on where the world stands."""
+    if isinstance(process, Call):
+        process = replace(process, arguments=tuple(_open(process, world)))
+    components = network(process, world).components
+    lifted = tuple(replace(c, arguments=tuple(_open(c, world))) if isinstance(c, Call) else c for c in components)
+    return process if lifted == components else Par(lifted) if len(lifted) > 1 else lifted[0]
+
+
+def _open(call: Call, world: World) -> Iterator[Expression]:
+    """The arguments of a call, those that are numbers, or names but not of ports, as unknowns."""
+    clauses = world.program.clauses(call.name)
+    ports = traffic(call, world).ports
+    for n, argument in enumerate(call.arguments):
+        head = clauses[0].head[n] if len(clauses) == 1 and n < len(clauses[0].head) else None
+        match argument:
+            case Number(value) if isinstance(head, Parameter) and not isinstance(value, Symbolic):
+                yield constant(Unknown(head.name, -1))
+            case Symbol(name) if isinstance(head, Parameter) and name not in ports:
+                yield constant(Unknown(name, -1))
+            case _:
+                yield argument
 
 
 # ---------------------------------------------------------------------------------------------------- selection
