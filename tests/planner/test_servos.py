@@ -58,10 +58,10 @@ def test_guarded_move_is_found_where_nothing_brings_the_object() -> None:
 
 def test_guarded_wait_is_found_where_a_belt_does() -> None:
     text = reaction("line", "Acquire")
-    waiting = (
-        r"IN\[t\]<v\d> # \(Delay\[30\.0\] : ABORT\) # \(\(IN\[b\]<(v\d)> : Equal\[\1, 1\]\) :; Delay\[0\.1\]\)\) : "
-    )
-    assert re.search(waiting, text), text
+    waiting = r"IN\[t\]<v\d> # \(Delay\[30\.0\] : ABORT\) # "
+    running = r"\(\(Delay\[0\.1\] : IN\[b\]<(v\d)> : Equal\[\1, 1\]\) :; STOP"
+    upstream = r".*\(Delay\[0\.1\] : IN\[s1\]<(v\d)> : IN\[j\]<(v\d)> : ~GTR\[\2 - \3, 0\.25\]\) :; STOP"
+    assert re.search(waiting + r"\(*" + running.removeprefix(r"\(") + upstream, text), text
     assert "OUT[r" not in text
 
 

@@ -26,7 +26,7 @@ from planner_reactor.planner.exploiting_text import DerivedAction
 from planner_reactor.rs.parser import parse_process, parse_program
 from planner_reactor.rs.prelude import QUANTUM
 from planner_reactor.rs.printer import show
-from planner_reactor.rs.terms import Call, Disable, Loop, Number, Process, calls, cond
+from planner_reactor.rs.terms import STOP, Call, Disable, Loop, Number, Process, calls, cond
 from planner_reactor.rs.vocabulary import Signature
 
 SELDOM = 20_000
@@ -154,10 +154,14 @@ def _paced(action: DerivedAction, timing: Mapping[str, Timing], model: Model) ->
 
 
 def _watched(action: DerivedAction, model: Model) -> Process | None:
-    """While the environment does the work: go on as long as what the model takes for granted is seen to hold."""
+    """While the environment does the work: go on as long as all that the model takes for granted is seen to hold.
+
+    Each is watched by itself, since of one nothing may be seen for a while.
+    """
     assumed = [model.assuming[condition] for condition in _open_conditions(action)]
-    seen = [parse_process(model.watching[name]) for name in assumed if name in model.watching]
-    return Loop(cond(*seen), Call("Delay", (Number(WATCH),))) if seen else None
+    texts = [model.watching[name] for name in assumed if name in model.watching]
+    each = [Loop(cond(Call("Delay", (Number(WATCH),)), parse_process(text)), STOP) for text in texts]
+    return Disable(tuple(each)) if len(each) > 1 else each[0] if each else None
 
 
 def _settling(action: DerivedAction, sensing: Process, timing: Mapping[str, Timing]) -> float:

@@ -14,14 +14,13 @@ import msgspec
 from planner_reactor.rs.loading import load
 from planner_reactor.runtime import Executer, Host, Scheduler
 from planner_reactor.trace import Trace
+from planner_reactor.workcell.environments.exploits import NEAR
 from planner_reactor.workcell.environments.worlds import Surroundings
 
 GLANCE = 0.2
 """Seconds between two glances of the lookout at a port."""
 STALE = 5.0
 """Seconds for which the lookout relies on what it was told, and an object that moved is taken to move."""
-NEAR = 0.25
-"""What lies so close to the robot is still taken to come."""
 
 HostMaker = Callable[[Scheduler, Trace], Host]
 
