@@ -117,6 +117,9 @@ FOUND = {
     "a POST that waits is refused when its label comes into use": Example(
         "", ("Delay[1] ; (E[7] # Never)", "POST[7] ; Delay[2]")
     ),
+    "what ends by a communication may be the last that kept a KILL": Example(
+        "", ("STREAM[p, 1] | (E[3] # ((ASSERT[s, 0] | IN[p]) | IN[p]<x>))", "DRAIN[s] : KILL[3]")
+    ),
     "two strands at one SIT are both served when an inhibition ends": Example(
         "",
         (

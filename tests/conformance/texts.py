@@ -13,6 +13,7 @@ from dataclasses import dataclass, field
 
 from planner_reactor.rs.parser import parse_process, parse_program
 from planner_reactor.rs.terms import Process, Program
+from tests.conformance.crowds import crowd
 
 
 @dataclass(frozen=True)
@@ -34,7 +35,8 @@ class Example:
 
 
 def example(seed: int) -> Example:
-    return _Texts(seed).example()
+    """The program of a seed: in each tenth several processes wait for the same."""
+    return Example("", crowd(seed)) if seed % 10 == 9 else _Texts(seed).example()
 
 
 CONTROLS = (

@@ -222,6 +222,8 @@ def communicated(
             kernel.tell(("COM", (name, value), "ok", ()), writer.where.site, reader.where.site)
         partner.state = RUNNING
         kernel.advance(partner, leaf.ok)
+        if kernel.watched:  # it may have come to its end
+            kernel.moved(partner)
     else:
         _met_abroad(own, partner, leaf, name, value)
     if kernel.due:
