@@ -30,6 +30,15 @@ def test_dynamics_gives_the_limit_set_with_the_actions_that_come_of_it(call: Cal
     assert (pos["dense"], pos["delay"], pos["resolution"], pos["form"]) == (True, "ts1", "max(t0, ts0)", "Theorem 6")
 
 
+def test_the_papers_models_need_no_host(call: Call, tmp_path: Path) -> None:
+    bare, hosted = (call("dynamics", TRACKING, "TEM", *given, "--json").object for given in ((), HOST))
+    assert bare == hosted
+    own = Path(TRACKING).read_text(encoding="utf-8") + "InView[p, a] = LST[p - a, w] : LST[a - p, w]\n"
+    (tmp_path / "own.rsl").write_text(own, encoding="utf-8")
+    found = call("dynamics", str(tmp_path / "own.rsl"), "TEM", "--json").object
+    assert [a["name"] for a in found["actions"]] == ["MOVECAMERA", "LOOK"]
+
+
 def test_the_arguments_may_be_left_out(call: Call) -> None:
     assert call("dynamics", BELT, "BEM", *HOST, "--json").object["dynamics"][0]["actions"] == ["WAITFOROBJECT"]
 
@@ -60,7 +69,7 @@ def test_a_reaction_that_does_not_keep_up_is_told_with_numbers_and_the_process_t
     ("arguments", "said"),
     [
         (("dynamics", TRACKING, "TEMM[p, a]", *HOST), "unknown process TEMM, did you mean TEM?"),
-        (("dynamics", TRACKING, "TEM[p, a]"), "unknown process InView"),
+        (("dynamics", TRACKING, "TEM[p, a]", "--host", "tests.cli.conftest"), "host"),
         (("dynamics", TRACKING, "TEM[p]", *HOST), "expected TEM[p, a]"),
         (("dynamics", TRACKING, "TEM", *HOST, "--interface", "sens1"), "no process sens1 for the interface, did"),
         (("dynamics", TRACKING, "TEM", *HOST, "--interface", "InView"), "expected a definition of the text"),

@@ -23,8 +23,9 @@ from planner_reactor.planner.exploiting_text import DerivedAction
 from planner_reactor.rs.parser import read_program
 from planner_reactor.rs.prelude import QUANTUM
 from planner_reactor.rs.printer import show
-from planner_reactor.rs.terms import Call, Parameter, Symbol
+from planner_reactor.rs.terms import Call, Parameter, Program, Symbol
 from planner_reactor.rs.unknowns import Symbolic
+from planner_reactor.workcell.environments.dynamics import host as papers
 
 
 def dynamics(
@@ -38,7 +39,7 @@ def dynamics(
     reaction: str | Iterable[str] = (),
     cost: float | str | None = None,
 ) -> dict[str, Any]:
-    """What an agent can exploit in the environment `process` of a file `*.rsl`.
+    """What an agent can exploit in the environment `process` of a file `*.rsl`. Without a `host` there is InView.
 
     `interface`: its sensory and motor processes (default: found from their ports); `goal`: ports of the agent's side,
     what does not matter for them is left out; `reaction`: processes of the file whose timing is checked against the
@@ -48,7 +49,8 @@ def dynamics(
     `checks`, and `schedule`. Raises what `evolve` raises.
     """
     seconds = _cost(cost)
-    subject = model(file, _with_arguments(file, process), host=host, given=given)
+    program, _ = read_program(read_text(file), file=str(file))
+    subject = model(file, _with_arguments(program, process), host=host or _sight(program), given=given)
     named = None if interface is None else [name for name in names_in(interface) if name]
     ports = [name for name in names_in(goal) if name]
     found = derive(subject.world, subject.call, named, goal=ports)
@@ -66,15 +68,19 @@ def dynamics(
     }  # fmt: skip
 
 
-def _with_arguments(file: str | Path, process: str) -> str:
+def _sight(program: Program) -> HostSource | None:
+    """Without a host the tests of the papers' models are there, unless the text has its own."""
+    return None if program.names & set(papers.processes) else papers
+
+
+def _with_arguments(program: Program, process: str) -> str:
     """`TEM` is `TEM[p, a]` if its definition says so."""
     call = called(process)
-    if call.arguments:
-        return process
-    program, _ = read_program(read_text(file), file=str(file))
     clauses = program.clauses(call.name)
     heads = [h.name for h in clauses[0].head if isinstance(h, Parameter)] if clauses else []
-    return show(Call(call.name, tuple(Symbol(name) for name in heads))) if heads else process
+    if call.arguments or not heads:
+        return process
+    return show(Call(call.name, tuple(Symbol(name) for name in heads)))
 
 
 def _entries(found: Dynamics) -> list[dict[str, Any]]:
