@@ -2,22 +2,28 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import pytest
+from msgspec.structs import replace
 
 from planner_reactor.analysis.conditions import text
 from planner_reactor.analysis.denseness import Denseness, Failure, dense, opened
 from planner_reactor.analysis.durations import greatest, least, less, valued
 from planner_reactor.analysis.equivalence import branching_bisimilar
+from planner_reactor.analysis.offering import Local, Refusal, local
+from planner_reactor.analysis.rounds import Rounds
 from planner_reactor.errors import InputError
 from planner_reactor.rs.configurations import Label, World
 from planner_reactor.rs.loading import load
 from planner_reactor.rs.parser import parse_process, parse_program
 from planner_reactor.rs.prelude import QUANTUM
+from planner_reactor.rs.terms import Value
 from planner_reactor.rs.unknowns import Unknown
 from planner_reactor.rs.vocabulary import BUILT_IN
 from planner_reactor.runtime import Scheduler, VirtualClock
 from planner_reactor.workcell.environments.dynamics import host, model
-from tests.analysis.timed_runs import ALIKE, Station, met, network, run
+from tests.analysis.timed_runs import ALIKE, Station, analysed, met, network, run
 
 SOURCE = "T[v] = Term[gamma] ; ((STREAM[x, v] # Term[tau]) ; T[v])\n"
 ST = "ST = (IN[x]<v> ; Delay[go]) :; (STREAM[y, v] # Delay[to])\n"
@@ -213,6 +219,21 @@ def test_the_bounds_are_hardly_wider_than_they_must_be() -> None:
     runs = [run(ALIKE * number) for number in range(100)]
     assert max(r.waited / r.delay for r in runs if r.delay > 0.1) > 0.9
     assert max(r.oldest / r.age for r in runs if r.age > 0.1) > 0.8
+
+
+@pytest.mark.parametrize("forgotten", ["delay", "lag"])
+def test_a_bound_that_forgets_a_delay_is_passed_by_runs(forgotten: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The defect is put in on purpose: then the runs have to find it."""
+
+    def forgetful(port: Value, rounds: Sequence[Rounds]) -> Local | Refusal:
+        answer = local(port, rounds)
+        return replace(answer, **{forgotten: 0}) if isinstance(answer, Local) else answer
+
+    monkeypatch.setattr("planner_reactor.analysis.denseness.local", forgetful)
+    analysed.cache_clear()
+    wrong = [r for r in (run(ALIKE * number) for number in range(50)) if not r.holds]
+    analysed.cache_clear()
+    assert len(wrong) > 3
 
 
 SLOW_CHAIN = """
