@@ -188,7 +188,7 @@ def test_the_ports_of_the_tracking_environment() -> None:
         (ST, "ST", "y", "x is not dense: the world outside does not write it: nobody writes it"),
         ("T = OUT[x, 1] : Delay[g]\n", "T", "x", "x is not dense: T writes it, and then ends or goes on without it"),
         ("T = Delay[g] : (OUT[x, 1] ; NIL)\n", "T", "x", "x is not dense: T writes it, and then ends"),
-        (SOURCE + "U[v] = (STREAM[x, v] # Delay[t]) ; U[v]\n", "T[0] | U[0]", "x", "T, U all write it, expected one writer"),
+        (SOURCE + "U[v] = (STREAM[x, v] # Delay[t]) ; U[v]\n", "T[0] | U[0]", "x", "T, U all write it"),
         ("A = IN[x]<v> :; (STREAM[y, v] # Delay[t])\nB = IN[y]<v> :; (STREAM[x, v] # Delay[t])\n", "A | B", "y",
          "waits for itself"),
         ("T = ((IN[a]<u> ; IN[b]<v>) | (Delay[t] ; Delay[s])) :; (STREAM[y, 1] # Delay[t])\n", "T", "y",
