@@ -8,6 +8,7 @@ import pytest
 
 from planner_reactor.experiments import acquiring, tracking
 from planner_reactor.experiments.figures_servo import draw_contact, draw_error, draw_sweep, draw_switching
+from planner_reactor.experiments.loop import Loop
 from planner_reactor.experiments.servoing import Scene, play
 
 STANDING = {"p": 0.0, "a": 0.0}
@@ -63,6 +64,17 @@ def test_the_reaction_changes_with_the_belt_and_no_object_is_lost() -> None:
     assert row["strikes"] == row["changes"] > 1
     assert (row["lost"], row["violations"], row["interruptions"]) == (0, [], 0)
     assert row["taken"] > 5
+
+
+def test_the_stop_button_stops_the_robot_and_not_the_world() -> None:
+    scene = acquiring.scene(acquiring.Trial("move", 4))
+
+    def press(loop: Loop) -> None:
+        loop.scheduler.call_at(1.0, loop.reactor.halt)
+
+    gauge = play(scene, watch=press).world.gauge
+    assert gauge.courses["pr"][-1][0] < 1.0 + 0.3  # what the motor has taken it finishes
+    assert gauge.courses["p"][-1][0] > 50.0
 
 
 def test_the_figures_are_drawn(tmp_path: Path) -> None:
