@@ -35,6 +35,9 @@ class _Placed(msgspec.Struct, frozen=True, eq=False):
     def __eq__(self, other: object) -> bool:
         return type(other) is type(self) and astuple(self)[:-1] == astuple(other)[:-1]
 
+    def __ne__(self, other: object) -> bool:  # a struct's own would compare identities
+        return not self == other
+
     def __hash__(self) -> int:
         return hash(astuple(self)[:-1])
 

@@ -36,6 +36,11 @@ class Text(msgspec.Struct, frozen=True):
     value: str
 
 
+def _differs(own: object, other: object) -> bool:
+    """`!=` of those that say themselves what `==` is: a struct's own would compare identities."""
+    return not own == other
+
+
 class Symbol(msgspec.Struct, frozen=True, eq=False):
     """A name that nothing binds: a constant, a port, a situation."""
 
@@ -44,6 +49,8 @@ class Symbol(msgspec.Struct, frozen=True, eq=False):
 
     def __eq__(self, other: object) -> bool:
         return type(other) is Symbol and self.name == other.name
+
+    __ne__ = _differs
 
     def __hash__(self) -> int:
         return hash(self.name)
@@ -57,6 +64,8 @@ class Variable(msgspec.Struct, frozen=True, eq=False):
 
     def __eq__(self, other: object) -> bool:
         return type(other) is Variable and self.name == other.name
+
+    __ne__ = _differs
 
     def __hash__(self) -> int:
         return hash(self.name)
@@ -84,6 +93,8 @@ class Apply(msgspec.Struct, frozen=True, eq=False):
     def __eq__(self, other: object) -> bool:
         return type(other) is Apply and (self.function, self.arguments) == (other.function, other.arguments)
 
+    __ne__ = _differs
+
     def __hash__(self) -> int:
         return hash((self.function, self.arguments))
 
@@ -108,6 +119,8 @@ class Call(msgspec.Struct, frozen=True, eq=False):
             other.arguments,
             other.results,
         )
+
+    __ne__ = _differs
 
     def __hash__(self) -> int:
         return hash((self.name, self.arguments, self.results))
@@ -249,6 +262,8 @@ class Schema(msgspec.Struct, frozen=True, eq=False):
             other.results,
             other.body,
         )
+
+    __ne__ = _differs
 
     def __hash__(self) -> int:
         return hash((self.name, self.head, self.results, self.body))
