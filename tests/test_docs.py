@@ -227,7 +227,7 @@ def test_the_reasons_of_refusals_are_told() -> None:
     files = ("admission", "adaptation", "migrating", "reactor", "waiting")
     code = "".join((PACKAGE / f"reactor/{name}.py").read_text() for name in files)
     told = {name for row in rows(REACTOR, "### Examined") for name in quoted(row[0])}
-    assert told == set(re.findall(r'RefusedError\(\s*"(\w+)"', code))
+    assert told == set(re.findall(r'(?:RefusedError\(\s*|\.reason = )"(\w+)"', code))
 
 
 def test_the_kinds_of_perceptions_are_told() -> None:

@@ -29,7 +29,7 @@ def group(name: str) -> py_trees.composites.Composite:
 
 
 def swaps(count: int = 50) -> tuple[float, float]:
-    """(p50, p99) microseconds of the processor from the new subtree to the end of the first tick with it, without building it."""
+    """(p50, p99) microseconds of the processor, from a subtree that is built to the end of the first tick with it."""
     root = py_trees.composites.Parallel("root", py_trees.common.ParallelPolicy.SuccessOnAll(synchronise=False))
     root.add_children([group(f"g{n}") for n in range(GROUPS)])
     tree = py_trees.trees.BehaviourTree(root)

@@ -1,8 +1,8 @@
 """planner-reactor: robot programs that start acting at once and keep improving while they run.
 
 Everything that the command does is also a call of the same name here: `run`, `check`, `loop`, `kit`, `plan`,
-`network`, `experiment`, `bench`, `evolve`, `limits`, `lts`, `verify` (see `planner_reactor.calls`). They are
-imported only when they are asked for.
+`network`, `experiment`, `bench`, `evolve`, `limits`, `lts`, `verify`, `dynamics` (see `planner_reactor.calls`). They
+are imported only when they are asked for.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from planner_reactor.calls.checking import check
+    from planner_reactor.calls.deriving import dynamics
     from planner_reactor.calls.evolving import evolve, limits
     from planner_reactor.calls.looping import kit, loop
     from planner_reactor.calls.measuring import bench, experiment
@@ -21,11 +22,15 @@ if TYPE_CHECKING:
     from planner_reactor.calls.transitions import lts
     from planner_reactor.calls.verifying import verify
 
-__all__ = ["bench", "check", "evolve", "experiment", "kit", "limits", "loop", "lts", "network", "plan", "run", "verify"]
+__all__ = [
+    "bench", "check", "dynamics", "evolve", "experiment", "kit", "limits", "loop", "lts", "network", "plan", "run",
+    "verify",
+]  # fmt: skip
 
 _MODULES = {
     "bench": "measuring",
     "check": "checking",
+    "dynamics": "deriving",
     "evolve": "evolving",
     "experiment": "measuring",
     "kit": "looping",

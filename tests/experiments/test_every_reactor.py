@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from planner_reactor.experiments.assumptions import NINE, one
+from planner_reactor.experiments.assumptions import one
 from planner_reactor.experiments.every_reactor import distinct, planned, subsets, summary, trials_of
 from planner_reactor.experiments.runs import the_domain
 

@@ -224,7 +224,7 @@ class Bounds:
         seconds = signature.window[1] if signature.window is not None else inf
         seconds = max(seconds, self._limits.get(call.name, 0.0))
         aborts = "abort" in signature.outcomes or call.name not in BUILT_IN
-        mistaken = 0.0 if any([isinstance(argument, Variable) for argument in call.arguments]) else NEVER
+        mistaken = 0.0 if any(isinstance(argument, Variable) for argument in call.arguments) else NEVER
         return Latest(seconds if "stop" in signature.outcomes else NEVER, seconds if aborts else mistaken, seconds)
 
     def _defined(
