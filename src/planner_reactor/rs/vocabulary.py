@@ -33,7 +33,7 @@ class Signature:
     follow. A call names none of the results, or all of them, with `open_results` any number of further ones.
     `window` is the least and greatest age in seconds at which the process ends (None: it depends on its
     arguments or on others), `outcomes` how it may end, beside an abort for arguments that have no value. `means` is a
-    test in RS on `parameters`, such as `LST[p, a]`: the process stops where the test would (its stop condition, X §6.1).
+    test in RS on `parameters`, such as `LST[p, a]`: the process stops where it would (its stop condition, X §6.1).
     """
 
     name: str
