@@ -20,7 +20,7 @@ from planner_reactor.workcell.evidence import Evidence
 from planner_reactor.workcell.kit import KitSpec, PartKind
 from planner_reactor.workcell.memory import Memory, PartRecord, TrayRecord
 from planner_reactor.workcell.plant import Plant
-from planner_reactor.workcell.sensors import Glimpse, Sensors
+from planner_reactor.workcell.sensors import Glimpse, PartView, Sensors
 from planner_reactor.workcell.watching import TrayWatch
 
 T = TypeVar("T")
@@ -102,6 +102,16 @@ class Cell:
         if kind is None:
             raise Aborted(f"no part is called {name}")
         return kind
+
+    def in_palm(self, record: PartRecord) -> PartView:
+        """What the palm camera sees of a part that was gripped, remembered. Aborts if it is not there any more."""
+        view = self.sensors.palm()
+        if not isinstance(view, PartView):
+            self.memory.forget(record)
+            self.arm.feel_empty()
+            raise Aborted(f"{record.handle} slipped out of the gripper")
+        self.memory.grip(record, view.kind, view.variant)
+        return view
 
     def tray(self, handle: str) -> TrayRecord | None:
         """What is remembered of a tray; None once it has left; aborts for what is no tray."""

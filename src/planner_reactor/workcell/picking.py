@@ -15,7 +15,7 @@ from planner_reactor.workcell.arm import FIXED, OPPORTUNE, Turn
 from planner_reactor.workcell.arm import TRAY as TRAY_RANK
 from planner_reactor.workcell.cell import TRAY, Cell, Steps
 from planner_reactor.workcell.memory import PartRecord, TrayRecord
-from planner_reactor.workcell.sensors import PartView, TrayView
+from planner_reactor.workcell.sensors import TrayView
 
 TRIES = 3
 """How often a process tries by itself: after a wrong part, or one that moved while it was followed."""
@@ -201,12 +201,7 @@ class Picking:
     def _is(self, record: PartRecord, wanted: str) -> bool:
         """Look at what was taken, and remember it; is it what was wanted?"""
         cell = self._cell
-        view = cell.sensors.palm()
-        if not isinstance(view, PartView):
-            cell.memory.forget(record)
-            cell.arm.feel_empty()
-            raise Aborted(f"{record.handle} slipped out of the gripper")
-        cell.memory.grip(record, view.kind, view.variant)
+        view = cell.in_palm(record)
         if view.variant == cell.part(view.kind).wanted:
             cell.evidence.supports("AS")
         else:

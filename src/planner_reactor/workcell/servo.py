@@ -24,7 +24,7 @@ from planner_reactor.workcell.arm import FIXED, OPPORTUNE, Turn
 from planner_reactor.workcell.arm import TRAY as TRAY_RANK
 from planner_reactor.workcell.cell import TRAY, Cell, Steps
 from planner_reactor.workcell.memory import PartRecord, TrayRecord
-from planner_reactor.workcell.sensors import PartView, TrayView
+from planner_reactor.workcell.sensors import TrayView
 
 PORTS = ("s1", "j", "t", "r")
 TIMING: Mapping[str, float] = {
@@ -249,12 +249,7 @@ class Servo:
 
     def _check(self, record: PartRecord) -> Steps[None]:
         cell = self._cell
-        view = cell.sensors.palm()
-        if not isinstance(view, PartView):
-            cell.memory.forget(record)
-            cell.arm.feel_empty()
-            raise Aborted(f"{record.handle} slipped out of the gripper")
-        cell.memory.grip(record, view.kind, view.variant)
+        view = cell.in_palm(record)
         if view.kind != record.kind:
             yield cell.arm.go("put back", cell.calibration.put_back_s)
             cell.arm.put_back()
