@@ -113,10 +113,12 @@ def draw_switching(story: Mapping[str, Any], out: Path) -> list[Path]:
             axes.step(across, up, where="post", color=colour, linewidth=width, label=name)
         robot = [_at(story["robot"], when) for when in story["acquired"]]
         axes.plot(story["acquired"], robot, "o", color=style.INK, markersize=2.5, label="acquired")
+        row, last = 0, -story["lasts"]
         for change in story["changes"]:
             axes.axvline(change["at_s"], color=style.INK, linestyle=style.DOTTED, linewidth=1.0)
-            name, place = "Move" if change["moves"] else "Wait", (change["at_s"], 1.01)
-            axes.annotate(name, place, xycoords=("data", "axes fraction"), fontsize=7, rotation=35, va="bottom")
+            row = row + 1 if change["at_s"] - last < story["lasts"] / 20 else 0  # no name over another
+            name, last = "Move" if change["moves"] else "Wait", change["at_s"]
+            axes.annotate(name, (last, 1.015 + 0.05 * row), xycoords=("data", "axes fraction"), fontsize=7, va="bottom")
         axes.set_xlim(0, story["lasts"])
         axes.set_xlabel("seconds; grey: the belt stands; dotted: an adaptation is applied")
         axes.set_ylabel("position along the belt")
