@@ -182,6 +182,20 @@ def test_answers_to_another_planner_are_nothing_to_this_one() -> None:
     assert second.pending == pending
 
 
+def test_who_asked_twice_plans_in_the_epoch_of_the_last_answer() -> None:
+    reactor = Reactor()
+    list(issued(Planner(DOMAIN, verify=False), reactor, 3))
+    second = successor(reactor)
+    first, last = reactor.standing(second_id := reactor.epoch + 1), reactor.standing(second_id)
+    second.resume(first)
+    second.step()  # it has begun with the first answer when the second comes
+    second.resume(last)
+    assert not second.fenced
+    assert {a.epoch for a in issued(second, reactor)} == {last.epoch}
+    second.resume(first)  # and an old answer changes nothing
+    assert not second.waits
+
+
 def test_a_reactor_that_begins_anew_as_it_was_is_told_again_what_was_not_answered() -> None:
     reactor = Reactor()
     planner = Planner(DOMAIN, verify=False)

@@ -262,7 +262,7 @@ class Planner:
 
     def resume(self, standing: Standing) -> None:
         """Go on with a reactor that stands: take over what is as it should be, adapt the rest (`resuming`)."""
-        if not self._standing.answers(standing):
+        if not self._standing.answers(standing, self._issuer.epoch):
             return
         from planner_reactor.planner.resuming import Resumption, begun_anew  # reads RS, as no beginning does
 

@@ -61,9 +61,12 @@ class Standings(msgspec.Struct, eq=False):
         self._asks = self.waits = True
         self._repeats = None
 
-    def answers(self, standing: Standing) -> bool:
-        """Is this what was asked for? A planner whose time is over goes on only if it asks itself."""
-        mine = self.waits and standing.enquirer == self._enquirer
+    def answers(self, standing: Standing, epoch: int) -> bool:
+        """Is this what was asked for? A planner whose time is over goes on only if it asks itself.
+
+        Who asked more than once is answered more than once, each time in another epoch: the reactor takes only the last.
+        """
+        mine = standing.enquirer == self._enquirer and (self.waits or standing.epoch > epoch)
         if mine:
             self.fenced = self._asks = self.waits = False
         return mine
