@@ -7,7 +7,7 @@ the same (the ledger of adaptations).
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Container, Mapping
 
 import msgspec
 
@@ -119,12 +119,20 @@ class Book:
             self.clauses.pop(label, None)
         self.clauses |= clauses_of(adaptation)
 
-    def settle(self, standing: Mapping[str, int], lost: Callable[[Key], bool]) -> None:
-        """Somebody says which versions stand: what is in them was applied, what was `lost` was not."""
+    def settle(
+        self, standing: Mapping[str, int], lost: Callable[[Key], bool], labels: Container[int] | None = None
+    ) -> None:
+        """Somebody says which versions stand: what is in them was applied, what was `lost` was not.
+
+        What changes no situation (a monitor comes or goes) is told by the `labels` that stand.
+        """
         for key, found in list(self.pending.items()):
             after = {c.situation: c.base + 1 for c in found.adaptation.changes}
             after |= {s: self.versions.get(s, 0) + 1 for s in found.adaptation.removed}
-            if after and not found.wrong and all(standing.get(s, 0) == v for s, v in after.items()):
+            stands = all(standing.get(s, 0) == v for s, v in after.items())
+            if not after:
+                stands = labels is not None and _stands(found.adaptation, labels)
+            if stands and not found.wrong:
                 self.answered(key, "applied")
             elif lost(key):
                 self.answered(key, "lost")
@@ -137,3 +145,7 @@ class Book:
             odd = sorted({*committed.clauses} ^ {*self.clauses})
             return f"reactions {odd} are in one book only"
         return ""
+
+
+def _stands(adaptation: Adaptation, labels: Container[int]) -> bool:
+    return all(n in labels for n in adaptation.adds) and not any(n in labels for n in adaptation.kills)

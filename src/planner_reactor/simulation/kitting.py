@@ -102,7 +102,7 @@ class Cell(Stage):
 
     def stands(self, standing: Standing) -> None:
         """The planner is told how the reactor stands: what others asked for and is not in it will never be."""
-        self.book.settle(standing.versions, lambda key: key[0] < standing.epoch)
+        self.book.settle(standing.versions, lambda key: key[0] < standing.epoch, standing.clauses)
         self.thinker.resume(standing)
 
     def _think(self) -> None:

@@ -165,14 +165,12 @@ class Workshop:
             self.axis.busy = False
 
     def _moves(self, target: float) -> Iterator[Any]:
-        axis, pose = self.axis, self.axis.pose
-        while abs(target - pose) > 1e-6:
+        axis = self.axis
+        while abs(target - axis.pose) > 1e-6:
             if not axis.linked:
                 if not (yield axis.back.within(LONGEST_DEED / 2)):
                     raise Aborted("the drive does not answer")
                 self.counts["resumed"] += 1
-                pose = axis.pose
-            way = max(-SPEED * TICK, min(SPEED * TICK, target - pose))
-            axis.set(pose + way)
+            pose = axis.pose  # read anew: it may have been pushed since, though the link is there again
+            axis.set(pose + max(-SPEED * TICK, min(SPEED * TICK, target - pose)))
             yield TICK
-            pose = pose + way if axis.linked else pose
