@@ -64,7 +64,7 @@ class Standings(msgspec.Struct, eq=False):
     def answers(self, standing: Standing, epoch: int) -> bool:
         """Is this what was asked for? A planner whose time is over goes on only if it asks itself.
 
-        Who asked more than once is answered more than once, each time in another epoch: the reactor takes only the last.
+        Who asked more than once is answered more than once, each time in another epoch: the last one counts.
         """
         mine = standing.enquirer == self._enquirer and (self.waits or standing.epoch > epoch)
         if mine:
