@@ -1,8 +1,14 @@
 """Random swaps of segments in a reactor of 10,000 processes, asked for by the world, by reactions, and by a thread.
 
 Measured is what one swap takes of the processor: `prepare`, which reads, checks and compiles its text and may be done
-anywhere, and `swap`, from `receive` to all of it applied, which is what the loop is held up for. What was lost,
-restarted and left behind is counted, and has to be nothing.
+anywhere, and then, from `receive` of what is prepared,
+
+    swap      asked for by the world, while nothing else happens: until the loop has nothing left to do
+    inside    asked for by a reaction that acts: until the swap is in effect; that reaction goes on meanwhile
+    thread    posted by another thread, one after the other: until the swap is in effect; on the wall clock as well
+
+After every swap it is asked whether a bystander began again, an event or a perception was lost, or anything was left
+behind (`SwapCell.check`), of every segment every `WALK` swaps; it has to be nothing.
 
     python benchmarks/bench_swap.py [SWAPS] [--out FILE]      a million; goes on where it stopped (make swaps)
 """
@@ -19,7 +25,7 @@ from collections import Counter
 from pathlib import Path
 from typing import Any
 
-from swap_cell import SwapCell
+from swap_cell import Segment, SwapCell
 
 from planner_reactor.reactor.preparing import Prepared
 from planner_reactor.runtime import VirtualClock, WallClock
@@ -28,18 +34,27 @@ SEGMENTS = 1_112
 """Of 9 processes each: 10,008 in all."""
 
 MANY = 1_000_000
-SLICE = 5_000
+SLICE = 20_000
 """Swaps of one reactor; every fifth reactor is swapped from a thread."""
+
+WALK = 500
+"""Swaps after which every segment is looked at."""
+
+ROUNDS = 50
+"""Rounds of the loop in which everything that follows from a swap and an event has happened."""
 
 BIN = 10
 """Microseconds that are told apart."""
 
 COUNTED = (
     "swaps that were not applied", "bystanders restarted", "events lost", "perceptions lost", "reactions left over",
-    "basic processes left over", "instances left over", "violations",
+    "processes left over", "basic processes left over", "instances left over", "segments gone", "violations",
     "cyclic garbage",
 )  # fmt: skip
 """What has to be 0."""
+
+
+TOTALS = ("swaps", "checks", "by_reactions", "from_a_thread", "seconds")
 
 
 class Spent:
@@ -67,61 +82,80 @@ class Spent:
 def swaps(count: int, *, segments: int = SEGMENTS, seed: int = 0) -> dict[str, Any]:
     """So many on the virtual clock; three events to ten swaps; of ten new segments three swap others as they act."""
     cell, draw = SwapCell(segments, VirtualClock()), random.Random(seed)
-    spent = {"prepare": Spent(), "swap": Spent(), "both": Spent()}
+    names = ("prepare", "swap", "both", "inside", "prepare inside")
+    prepare, swap, both, inside, prepare_inside = spent = [Spent() for _ in names]
+    cell.told.took, cell.prepared_inside = inside.add, prepare_inside.add
     built = cell.number
     settle()
+    began = time.process_time()
     while cell.number - built < count:
         if draw.random() < 0.3:
             cell.happen(cell.segments[draw.randrange(segments)])
             cell.scheduler.run(cell.scheduler.now)
-        adaptation = cell.adaptation(cell.segments[draw.randrange(segments)], swapping=draw.random() < 0.3)
-        began = time.thread_time()
+        segment = cell.segments[draw.randrange(segments)]
+        adaptation = cell.adaptation(segment, swapping=draw.random() < 0.3)
+        asked = time.thread_time()
         prepared = cell.reactor.prepare(adaptation)
         ready = time.thread_time()
         cell.reactor.receive(prepared)
         cell.scheduler.run(cell.scheduler.now)
         over = time.thread_time()
-        spent["prepare"].add(ready - began)
-        spent["swap"].add(over - ready)
-        spent["both"].add(over - began)
-        cell.take()
-    return told(cell, built, spent)
+        prepare.add(ready - asked)
+        swap.add(over - ready)
+        both.add(over - asked)
+        cell.check(segment)
+        if cell.checks % WALK == 0:
+            cell.counts()
+    return told(cell, built, dict(zip(names, spent, strict=True)), time.process_time() - began)
 
 
 def swaps_from_a_thread(count: int, *, segments: int = SEGMENTS, seed: int = 0) -> dict[str, Any]:
-    """So many on the wall clock, each prepared and posted by a thread of its own, eight ahead, while events happen."""
+    """So many on the wall clock, each prepared and posted by a thread of its own, while events happen."""
     cell, draw = SwapCell(segments, WallClock()), random.Random(seed)
-    spent = {"thread prepare": Spent(), "posted to applied, wall": Spent()}
-    built, room = cell.number, threading.Semaphore(8)
-    standing = threading.Lock()
+    spent = {"thread prepare": Spent(), "thread": Spent(), "posted to applied, wall": Spent()}
+    built, applied = cell.number, threading.Semaphore(0)
+    cell.told.took = spent["thread"].add
     settle()
+    began = time.process_time()
 
-    def apply(prepared: Prepared, posted: float) -> None:
+    def apply(segment: Segment, prepared: Prepared, posted: float) -> None:
+        cell.told.asked[str(prepared.adaptation.id)] = time.thread_time()
         cell.reactor.receive(prepared)
+        cell.scheduler.soon(lambda: over(segment, posted))
+
+    def over(segment: Segment, posted: float) -> None:
+        spent["posted to applied, wall"].add(time.perf_counter() - posted)
         if draw.random() < 0.3:
             cell.happen(cell.segments[draw.randrange(segments)])
-        cell.scheduler.soon(lambda: (spent["posted to applied, wall"].add(time.perf_counter() - posted), room.release(),
-                                     cell.take()))  # fmt: skip
+        checked(segment, ROUNDS)
+
+    def checked(segment: Segment, rounds: int) -> None:
+        if rounds and not cell.quiet:
+            cell.scheduler.soon(lambda: checked(segment, rounds - 1))
+            return
+        cell.check(segment)
+        if cell.checks % WALK == 0:
+            cell.counts()
+        applied.release()
 
     def ask() -> None:
         asking = random.Random(seed + 1)
-        order = [n for _ in range(count // segments + 2) for n in asking.sample(range(segments), segments)]
-        for index in order[:count]:  # never one that is under way
-            room.acquire()
-            with standing:
-                adaptation = cell.adaptation(cell.segments[index])
+        for _ in range(count):
+            segment = cell.segments[asking.randrange(segments)]
+            adaptation = cell.adaptation(segment)
             began = time.thread_time()
             prepared = cell.reactor.prepare(adaptation)
             spent["thread prepare"].add(time.thread_time() - began)
             posted = time.perf_counter()
-            cell.scheduler.post(lambda prepared=prepared, posted=posted: apply(prepared, posted))  # type: ignore[misc]
+            cell.scheduler.post(lambda s=segment, p=prepared, at=posted: apply(s, p, at))  # type: ignore[misc]
+            applied.acquire()
         cell.scheduler.post(lambda: cell.scheduler.call_after(0.2, cell.scheduler.stop))
 
     thread = threading.Thread(target=ask)
     thread.start()
     cell.scheduler.run()
     thread.join()
-    return told(cell, built, spent)
+    return told(cell, built, spent, time.process_time() - began)
 
 
 def settle() -> None:
@@ -131,14 +165,17 @@ def settle() -> None:
     gc.disable()
 
 
-def told(cell: SwapCell, built: int, spent: dict[str, Spent]) -> dict[str, Any]:
+def told(cell: SwapCell, built: int, spent: dict[str, Spent], seconds: float) -> dict[str, Any]:
     garbage = gc.collect()
     gc.unfreeze()
     gc.enable()
     return {
         "cyclic garbage": garbage,
         "swaps": cell.number - built,
+        "checks": cell.checks,
         "by_reactions": cell.inside,
+        "from_a_thread": spent["thread"].bins.total() if "thread" in spent else 0,
+        "seconds": seconds,
         "processes": cell.reactor.executer.processes_live,
         "spent": {name: dict(found.bins) for name, found in spent.items()},
         **cell.counts(),
@@ -151,7 +188,7 @@ def summed(found: list[dict[str, Any]]) -> dict[str, Any]:
     for one in found:
         for name, bins in one["spent"].items():
             spent.setdefault(name, Spent()).bins.update(Spent(bins).bins)
-    counts = {name: sum(one[name] for one in found) for name in ("swaps", "by_reactions", *COUNTED)}
+    counts = {name: sum(one[name] for one in found) for name in (*TOTALS, *COUNTED)}
     processes = max((one["processes"] for one in found), default=0)
     return {**counts, "processes": processes, "us": {name: times.shown() for name, times in sorted(spent.items())}}
 

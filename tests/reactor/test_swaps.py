@@ -16,7 +16,8 @@ from planner_reactor.runtime import VirtualClock
 BALANCED = dict.fromkeys(
     (
         "swaps that were not applied", "bystanders restarted", "events lost", "perceptions lost",
-        "reactions left over", "basic processes left over", "instances left over", "violations",
+        "reactions left over", "processes left over",
+        "basic processes left over", "instances left over", "segments gone", "violations",
     ),
     0,
 )  # fmt: skip

@@ -158,10 +158,11 @@ class Laws:
         """Laws 1, 4, 6, 7 and 8 of a transaction that has just ended well."""
         adaptation, versions = transaction.adaptation, transaction.before.versions
         self._in_time(transaction, self._reactor.scheduler.now)
-        self._half(transaction)
-        self._promised.append(transaction)
-        if left := [label for label in adaptation.kills if label not in transaction.kills]:
-            self.breach(1, f"adaptation {adaptation.id} was applied without killing {left}")
+        if not self._reactor.halted:  # what a halt cut short comes to life with the reset
+            self._half(transaction)
+            self._promised.append(transaction)
+            if left := [label for label in adaptation.kills if label not in transaction.kills]:
+                self.breach(1, f"adaptation {adaptation.id} was applied without killing {left}")
         if adaptation.epoch < self._epoch:
             self.breach(7, f"epoch {adaptation.epoch} after {self._epoch}")
         self._once(adaptation.epoch, adaptation.id)
@@ -187,42 +188,57 @@ class Laws:
 
     def check(self) -> None:
         """Ask every law about the present state: cheap enough to be asked after each event."""
-        under_way = self._reactor.transactions.under_way
-        if under_way or self._promised:
+        reactor = self._reactor
+        under_way = reactor.transactions.under_way
+        if self._promised:
+            self._kept_promises()
+        if under_way:
             self._atomic(under_way)
-            self._bounded(under_way)
-        self._owned()
+        if reactor.situations.holds:
+            self._owned()
         self._durable(under_way)
-        self._perceptions()
+        channel = reactor.perceptions
+        if channel.sent != channel.taken + len(channel):
+            self._perceptions()
         self._balanced(len(under_way))
-        self._finite()
-        self._disabled()
-        self._halted()
+        if (problem := reactor.over_budget()) is not None:  # law 13: instances and processes stay within their budgets
+            self.breach(13, problem)
+        if self._disabled_since or self._retired or reactor.failed:
+            self._disabled()
+        for assumption in reactor.readings.disbelieved():
+            self.breach(14, f"{assumption} was read to fail as often as it takes, and counts as holding")
+        if reactor.halted:
+            self._halted()
 
-    def _atomic(self, under_way: tuple[Transaction, ...]) -> None:
-        """Law 1: of an adaptation everything is there or nothing; what goes, goes first."""
+    def _kept_promises(self) -> None:
+        """Law 1: of an adaptation that was applied everything is there."""
         for transaction in self._promised:
             adds = set(transaction.adaptation.adds)
             if missing := sorted(adds - self._added):
                 self.breach(1, f"adaptation {transaction.adaptation.id} was applied without adding {missing}")
             self._added -= adds
         self._promised.clear()
+
+    def _atomic(self, under_way: tuple[Transaction, ...]) -> None:
+        """Law 1: of an adaptation everything is there or nothing; what goes, goes first. Law 4: it is within its bound.
+
+        A loop that was held up takes back what is late as it goes on.
+        """
+        now, attended = self._reactor.scheduler.now, self._reactor.scheduler.attended
         for transaction in under_way:
-            self._half(transaction)
+            if now > transaction.surgery + GRACE:
+                self._half(transaction)
             if transaction.adds and len(transaction.kills) < len(transaction.adaptation.kills):
                 self.breach(1, f"adaptation {transaction.adaptation.id} added reactions beside those that it removes")
+            if attended > transaction.received + transaction.limit + GRACE:
+                self._in_time(transaction, attended)
 
     def _half(self, transaction: Transaction) -> None:
         if self._reactor.scheduler.now > transaction.surgery + GRACE:
             self.breach(1, f"adaptation {transaction.adaptation.id} was half applied for some time")
 
-    def _bounded(self, under_way: tuple[Transaction, ...]) -> None:
-        """Law 4: an adaptation under way is within its bound. A loop that was held up takes it back as it goes on."""
-        attended = self._reactor.scheduler.attended
-        for transaction in under_way:
-            self._in_time(transaction, attended)
-
     def _in_time(self, transaction: Transaction, now: float) -> None:
+        """Law 4: an adaptation is applied, or taken back, within its bound."""
         if now > transaction.received + transaction.limit + GRACE:
             self.breach(4, f"adaptation {transaction.adaptation.id} exceeds its bound of {transaction.limit} s")
 
@@ -242,8 +258,9 @@ class Laws:
         concerned = running.touched()
         if written is not self._written:
             concerned |= self._rewritten(written)
-        if concerned or self._unequal:
-            self._unequal = {label for label in self._unequal | concerned if (label in running) != (label in written)}
+        if not (concerned or self._unequal):
+            return
+        self._unequal = {label for label in self._unequal | concerned if (label in running) != (label in written)}
         if self._unequal and not self._reactor.restoring and not self._reactor.halted:
             self.breach(8, f"reactions {sorted(self._unequal)} run and are not in the journal, or the reverse")
 
@@ -272,11 +289,6 @@ class Laws:
             if problem := ledger():
                 self.breach(11, problem)
 
-    def _finite(self) -> None:
-        """Law 13: instances and processes stay within their budgets."""
-        if (problem := self._reactor.over_budget()) is not None:
-            self.breach(13, problem)
-
     def _disabled(self) -> None:
         """Law 14: what rests on a failed assumption is disabled."""
         for assumption in self._reactor.failed:
@@ -294,12 +306,10 @@ class Laws:
                     if instance.version <= newest and not instance.gone:
                         self.breach(14, f"instance {instance.number} of {name} is of an old version that rests on a "
                                         "failed assumption, and is not given up")  # fmt: skip
-        for assumption in self._reactor.readings.disbelieved():
-            self.breach(14, f"{assumption} was read to fail as often as it takes, and counts as holding")
 
     def _halted(self) -> None:
         """Law 15: after HALT no basic process runs, until a reset."""
-        if self._reactor.halted and (running := self._reactor.commands()):
+        if running := self._reactor.commands():
             self.breach(15, f"{running} basic processes run though the reactor is halted")
 
 

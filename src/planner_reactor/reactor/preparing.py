@@ -12,11 +12,12 @@ import msgspec
 
 from planner_reactor.errors import RefusedError, RSError
 from planner_reactor.link.messages import Adaptation
+from planner_reactor.reactor.forms import Durations, Filling, Form, Forms, filling, key_of
 from planner_reactor.rs.loading import load
 from planner_reactor.rs.printer import show
 from planner_reactor.rs.reactions import Reaction, reaction_of
 from planner_reactor.rs.terms import Program, Schema, Value
-from planner_reactor.rs.vocabulary import Signature
+from planner_reactor.rs.vocabulary import BUILT_IN, Signature
 from planner_reactor.runtime import Clause
 
 
@@ -35,28 +36,54 @@ class Prepared(msgspec.Struct, frozen=True):
     reactions: Mapping[int, Reaction] = {}  # by label
     clauses: Mapping[int, str] = {}  # the same in canonical print
     compiled: tuple[Clause, ...] = ()  # and ready to be loaded
+    durations: Mapping[int, Durations] = {}  # of those of a form met before
     refusal: RefusedError | None = None
 
 
-def prepare(
-    adaptation: Adaptation, vocabulary: Vocabulary, compiled: Callable[[Iterable[Schema]], tuple[Clause, ...]]
-) -> Prepared:
-    """Read and check the text of an adaptation. Raises nothing: what is wrong is the `refusal`."""
-    try:
-        program = load(
-            adaptation.definitions,
-            file=f"<adaptation {adaptation.id}>",
-            signatures=vocabulary.signatures,
-            functions=vocabulary.functions,
-            given=vocabulary.equation,
+class Preparing:
+    """Prepares adaptations for one reactor, in any thread. What was met before is read by its form (`forms`)."""
+
+    def __init__(
+        self, vocabulary: Vocabulary, compiled: Callable[[Iterable[Schema]], tuple[Clause, ...]]
+    ) -> None:
+        self._vocabulary = vocabulary
+        self._compiled = compiled
+        known = {**vocabulary.signatures, **BUILT_IN}
+        self._forms = Forms(lambda text: self._load(text, "<form>"), known.__contains__)
+
+    def prepare(self, adaptation: Adaptation) -> Prepared:
+        """Read and check the text of an adaptation. Raises nothing: what is wrong is the `refusal`."""
+        file = f"<adaptation {adaptation.id}>"
+        found = key_of(adaptation.definitions)
+        if found is not None and (form := self._forms.get(found[0])) is not None:
+            return self._of_form(adaptation, form, filling(found[1], found[2], file))
+        try:
+            program = self._load(adaptation.definitions, file)
+        except RSError as problem:
+            return Prepared(adaptation, refusal=RefusedError("text", str(problem)))
+        reactions = {}
+        for schema in program.schemas:
+            if (reaction := reaction_of(schema)) is None:
+                refusal = RefusedError("labels", f"{schema.name} is no reaction, expected clauses P[n] = …")
+                return Prepared(adaptation, refusal=refusal)
+            reactions[reaction.label] = reaction
+        printed = {label: show(reaction.schema) for label, reaction in reactions.items()}
+        if found is not None:
+            self._forms.met(found[0])
+        return Prepared(adaptation, reactions, printed, self._compiled([r.schema for r in reactions.values()]))
+
+    def _of_form(self, adaptation: Adaptation, form: Form, made_of: Filling) -> Prepared:
+        made = [make(made_of) for make in form.reactions]
+        return Prepared(
+            adaptation,
+            {reaction.label: reaction for reaction in made},
+            {reaction.label: show(made_of) for reaction, show in zip(made, form.printed, strict=True)},
+            self._compiled([reaction.schema for reaction in made]),
+            durations={r.label: known for r, known in zip(made, form.durations, strict=False)},
         )
-    except RSError as problem:
-        return Prepared(adaptation, refusal=RefusedError("text", str(problem)))
-    reactions = {}
-    for schema in program.schemas:
-        if (reaction := reaction_of(schema)) is None:
-            refusal = RefusedError("labels", f"{schema.name} is no reaction, expected clauses P[n] = …")
-            return Prepared(adaptation, refusal=refusal)
-        reactions[reaction.label] = reaction
-    printed = {label: show(reaction.schema) for label, reaction in reactions.items()}
-    return Prepared(adaptation, reactions, printed, compiled([r.schema for r in reactions.values()]))
+
+    def _load(self, text: str, file: str) -> Program:
+        known = self._vocabulary
+        return load(
+            text, file=file, signatures=known.signatures, functions=known.functions, given=known.equation
+        )

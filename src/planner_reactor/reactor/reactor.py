@@ -25,12 +25,13 @@ from planner_reactor.reactor.composition import undone
 from planner_reactor.reactor.disks import NoDisk
 from planner_reactor.reactor.doubts import Doubts
 from planner_reactor.reactor.enquiries import repeated, standing
+from planner_reactor.reactor.forms import Durations
 from planner_reactor.reactor.freezing import Freezer
 from planner_reactor.reactor.heartbeat import Heartbeat
 from planner_reactor.reactor.journal import Decided, Journal, Left
 from planner_reactor.reactor.laws import Laws
 from planner_reactor.reactor.life import Life
-from planner_reactor.reactor.preparing import Prepared, Vocabulary, prepare
+from planner_reactor.reactor.preparing import Prepared, Preparing, Vocabulary
 from planner_reactor.reactor.reactions import Reactions
 from planner_reactor.reactor.readings import Readings
 from planner_reactor.reactor.storms import Intensity, Storms
@@ -45,6 +46,9 @@ from planner_reactor.runtime.sensing import Sensed
 from planner_reactor.trace import Trace
 
 EQUATION_3 = parse_program(f"REACTOR = ADD<m> :: (E[m] # {REACTION}[m])", file="<reactor>")
+
+UNREADABLE = frozenset({"text", "mode"})
+"""Reasons of refusing what no planner that is right can have meant."""
 
 TOLD_CAUSES = frozenset({"failed", "error", "budget", "assumption"})
 """Causes of failed instances that the planner hears of; the others follow from what it knows already."""
@@ -103,6 +107,9 @@ class Reactor:
             on_end=self._root_ended,
         )
         built_in.attach(self.executer)
+        self._preparing = Preparing(self.vocabulary, self.executer.compiled)
+        self._limits = {name: process.limit for name, process in self.host.processes.items()}
+        self._durations: dict[int, Durations] = {}  # how long reactions may take, by label
         self.transactions = Transactions(self.executer, scheduler, self.journal, self._finished)
         self.assumptions = Assumptions(scheduler, self.journal, self.situations, self._assumption_told)
         self.readings: Readings = Readings(scheduler, self.host, self.assumptions, self._assumption_told)
@@ -139,7 +146,7 @@ class Reactor:
 
     def prepare(self, adaptation: Adaptation) -> Prepared:
         """Read and check its text beforehand: most of what `receive` costs. May be called from any thread."""
-        return prepare(adaptation, self.vocabulary, self.executer.compiled)
+        return self._preparing.prepare(adaptation)
 
     def receive(self, given: Adaptation | Prepared) -> None:
         """Take an adaptation: refused whole, with a reason, or begun (its outcome is a perception).
@@ -167,12 +174,10 @@ class Reactor:
             self.transactions.revoke(adaptation.epoch)
             reactions = self.transactions.begin(prepared, killed, bound).reactions
         except RefusedError as refusal:
-            committed = self.journal.state.committed
-            if sound and adaptation.epoch == committed.epoch and adaptation.id not in committed.taken:
-                decided = Decided(adaptation.id, "refused", self.scheduler.now, adaptation.epoch)
-                self.journal.note(decided, sync=False)
-            self._refused(adaptation, refusal.reason, str(refusal))
+            spent = sound and self._spent(adaptation, refusal.reason)
+            self._refused(adaptation, refusal.reason, str(refusal), doubtful=spent)
             return
+        self._durations.update(prepared.durations)
         versions = self.journal.state.committed.versions
         self.loaded(reactions, {r.label: versions.get(r.situation or "", 0) + 1 for r in reactions})
 
@@ -198,7 +203,21 @@ class Reactor:
             if reaction.situation and reaction.spawns:
                 self.situations.spawned.add(reaction.situation)
 
-    def _refused(self, refused: Adaptation, reason: str, message: str, *, doubtful: bool = False) -> None:
+    def _spent(self, refused: Adaptation, reason: str) -> bool:
+        """Its id is spent, so that nobody sends it again when it would do: durable before the refusal is told.
+
+        A later planner's time begins with what is refused of it too, unless that could not even be read.
+        """
+        committed = self.journal.state.committed
+        if refused.epoch < committed.epoch or committed.spent(refused.epoch, refused.id):
+            return False
+        if refused.epoch > committed.epoch and reason in UNREADABLE:
+            return False
+        self.transactions.revoke(refused.epoch)
+        self.journal.note(Decided(refused.id, "refused", self.scheduler.now, refused.epoch))
+        return True
+
+    def _refused(self, refused: Adaptation, reason: str, message: str, *, doubtful: bool = True) -> None:
         self.counts["refused"] += 1
         self.trace.record("adaptation_refused", id=refused.id, reason=reason, message=message)
         told: dict[str, Any] = {"cause": reason, "values": (message,), "epoch": refused.epoch}
@@ -217,8 +236,7 @@ class Reactor:
 
     def bound(self, adaptation: Adaptation) -> float:
         """Seconds in which the adaptation will have been applied (R §5.5, *bounded*)."""
-        limits = {name: process.limit for name, process in self.host.processes.items()}
-        return bound_of(adaptation, self.reactions, self.vocabulary.signatures, limits)
+        return bound_of(adaptation, self.reactions, self.vocabulary.signatures, self._limits, self._durations)
 
     def _root_ended(self, root: Root) -> None:
         self.situations.root_ended(root)
@@ -231,11 +249,12 @@ class Reactor:
             return
         self._forget(r.label for r in transaction.reactions)
         if transaction.state == "refused":
-            self._refused(adaptation, (why := transaction.reason), transaction.problem, doubtful=why == "disk")
+            self._refused(adaptation, transaction.reason, transaction.problem)
             return
         self.counts["timed_out"] += 1
         self.trace.record("adaptation_timed_out", id=adaptation.id, bound=transaction.limit)
-        self.perceive("adaptation_timed_out", str(adaptation.id), cause="TIMEOUT", epoch=adaptation.epoch)
+        told: dict[str, Any] = {"cause": "TIMEOUT", "epoch": adaptation.epoch}
+        self.doubts.settle(lambda: self.perceive("adaptation_timed_out", str(adaptation.id), **told), doubtful=True)
 
     def _applied(self, transaction: Transaction) -> None:
         adaptation = transaction.adaptation
@@ -258,6 +277,7 @@ class Reactor:
         self.executer.unload([reaction.schema for reaction in gone])
         for reaction in gone:
             self._lifetimes.pop(reaction.label, None)
+            self._durations.pop(reaction.label, None)
 
     # -- what happens in it
 
@@ -315,6 +335,7 @@ class Reactor:
         changed = not retired and self.transactions.changed(label, added=False)
         if not changed and not retired:
             self.journal.note(Left(label, self.scheduler.now))
+            self.transactions.left(label)
         if changed or retired:
             self.perceive("guard_kill", str(label))
         if not changed:

@@ -70,6 +70,11 @@ class Situations:
         """The situations that something inhibits."""
         return list(dict.fromkeys([s for held in self._held_by.values() for s in held])) if self._held_by else []
 
+    @property
+    def holds(self) -> bool:
+        """Has anything been inhibited by an owner that is not gone?"""
+        return bool(self._held_by)
+
     def is_disabled(self, name: str, assumption: str) -> bool:
         return any(held.owner == ("assumption", assumption) for held in self.named(name).inhibitions)
 
