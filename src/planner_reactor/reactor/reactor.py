@@ -47,9 +47,6 @@ from planner_reactor.trace import Trace
 
 EQUATION_3 = parse_program(f"REACTOR = ADD<m> :: (E[m] # {REACTION}[m])", file="<reactor>")
 
-UNREADABLE = frozenset({"text", "mode"})
-"""Reasons of refusing what no planner that is right can have meant."""
-
 TOLD_CAUSES = frozenset({"failed", "error", "budget", "assumption"})
 """Causes of failed instances that the planner hears of; the others follow from what it knows already."""
 
@@ -174,8 +171,11 @@ class Reactor:
             self.transactions.revoke(adaptation.epoch)
             reactions = self.transactions.begin(prepared, killed, bound).reactions
         except RefusedError as refusal:
-            spent = sound and self._spent(adaptation, refusal.reason)
-            self._refused(adaptation, refusal.reason, str(refusal), doubtful=spent)
+            committed = self.journal.state.committed
+            if sound and adaptation.epoch == committed.epoch and adaptation.id not in committed.taken:
+                decided = Decided(adaptation.id, "refused", self.scheduler.now, adaptation.epoch)
+                self.journal.note(decided, sync=False)
+            self._refused(adaptation, refusal.reason, str(refusal))
             return
         self._durations.update(prepared.durations)
         versions = self.journal.state.committed.versions
@@ -203,21 +203,7 @@ class Reactor:
             if reaction.situation and reaction.spawns:
                 self.situations.spawned.add(reaction.situation)
 
-    def _spent(self, refused: Adaptation, reason: str) -> bool:
-        """Its id is spent, so that nobody sends it again when it would do: durable before the refusal is told.
-
-        A later planner's time begins with what is refused of it too, unless that could not even be read.
-        """
-        committed = self.journal.state.committed
-        if refused.epoch < committed.epoch or committed.spent(refused.epoch, refused.id):
-            return False
-        if refused.epoch > committed.epoch and reason in UNREADABLE:
-            return False
-        self.transactions.revoke(refused.epoch)
-        self.journal.note(Decided(refused.id, "refused", self.scheduler.now, refused.epoch))
-        return True
-
-    def _refused(self, refused: Adaptation, reason: str, message: str, *, doubtful: bool = True) -> None:
+    def _refused(self, refused: Adaptation, reason: str, message: str, *, doubtful: bool = False) -> None:
         self.counts["refused"] += 1
         self.trace.record("adaptation_refused", id=refused.id, reason=reason, message=message)
         told: dict[str, Any] = {"cause": reason, "values": (message,), "epoch": refused.epoch}
@@ -249,12 +235,11 @@ class Reactor:
             return
         self._forget(r.label for r in transaction.reactions)
         if transaction.state == "refused":
-            self._refused(adaptation, transaction.reason, transaction.problem)
+            self._refused(adaptation, (why := transaction.reason), transaction.problem, doubtful=why == "disk")
             return
         self.counts["timed_out"] += 1
         self.trace.record("adaptation_timed_out", id=adaptation.id, bound=transaction.limit)
-        told: dict[str, Any] = {"cause": "TIMEOUT", "epoch": adaptation.epoch}
-        self.doubts.settle(lambda: self.perceive("adaptation_timed_out", str(adaptation.id), **told), doubtful=True)
+        self.perceive("adaptation_timed_out", str(adaptation.id), cause="TIMEOUT", epoch=adaptation.epoch)
 
     def _applied(self, transaction: Transaction) -> None:
         adaptation = transaction.adaptation
@@ -335,7 +320,6 @@ class Reactor:
         changed = not retired and self.transactions.changed(label, added=False)
         if not changed and not retired:
             self.journal.note(Left(label, self.scheduler.now))
-            self.transactions.left(label)
         if changed or retired:
             self.perceive("guard_kill", str(label))
         if not changed:
