@@ -34,7 +34,7 @@ SEGMENTS = 1_112
 """Of 9 processes each: 10,008 in all."""
 
 MANY = 1_000_000
-SLICE = 20_000
+SLICE = 50_000
 """Swaps of one reactor; every fifth reactor is swapped from a thread."""
 
 WALK = 500

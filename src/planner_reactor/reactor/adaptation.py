@@ -37,7 +37,7 @@ from planner_reactor.rs.reactions import (
     versions_script,
     wait_script,
 )
-from planner_reactor.rs.terms import Process, operands
+from planner_reactor.rs.terms import Process
 from planner_reactor.runtime import Executer, Root, Scheduler, Timer
 
 ROUNDING = 1e-6
@@ -59,6 +59,7 @@ class Transaction:
     before: Committed  # the structure that it changes
     received: float
     bound: float
+    needed: int  # processes, as its reactions come to life
     limit: float = LONGEST
     state: State = "draining"
     root: Root | None = None
@@ -79,11 +80,6 @@ class Transaction:
         """Every situation that it changes or removes, top-down."""
         changed = tuple(change.situation for change in self.adaptation.changes)
         return (*changed, *(s for s in self.adaptation.removed if s not in changed))
-
-
-def size(process: Process) -> int:
-    """How many processes it may at once be made of, as it comes to life: no more than it has parts."""
-    return 2 + sum(map(size, operands(process)))
 
 
 def script(adaptation: Adaptation, killed: tuple[Reaction, ...]) -> Process:
@@ -148,7 +144,7 @@ class Transactions:
         except DiskError as problem:
             raise RefusedError("disk", f"it cannot be made durable: {problem}") from problem
         reactions = tuple([prepared.reactions[label] for label in adaptation.adds])
-        transaction = Transaction(adaptation, reactions, killed, before, now, bound)
+        transaction = Transaction(adaptation, reactions, killed, before, now, bound, prepared.needed)
         deadline = adaptation.deadline if adaptation.deadline is not None else bound
         self._executer.load(prepared.compiled)
         transaction.limit = LONGEST if isinf(deadline) else deadline
@@ -169,7 +165,7 @@ class Transactions:
             if transaction.adaptation.id == number and transaction.state == "draining" and not transaction.reason:
                 if self._scheduler.now > transaction.deadline + ROUNDING:
                     return None
-                if (needed := sum(size(r.schema.body) for r in transaction.reactions)) > self._executer.room:
+                if (needed := transaction.needed) > self._executer.room:
                     transaction.reason = "budget"
                     transaction.problem = f"it may need {needed} processes, there is room for {self._executer.room}"
                     return None

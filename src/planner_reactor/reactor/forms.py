@@ -91,6 +91,7 @@ class Form(msgspec.Struct, frozen=True):
 
     reactions: tuple[Callable[[Filling], Reaction], ...]
     printed: tuple[Callable[[Filling], str], ...]
+    needed: int
     durations: tuple[Durations, ...] = ()
 
 
@@ -127,8 +128,11 @@ class Forms:
     def get(self, key: Key) -> Form | None:
         return self._forms.get(key)
 
-    def met(self, key: Key) -> None:
-        """A text of this form was found to be sound. From the second time on the form is kept, if it may be."""
+    def met(self, key: Key, needed: int) -> None:
+        """A text of this form was found to be sound, and to need so many processes.
+
+        From the second time on the form is kept, if it may be.
+        """
         if key in self._forms:
             return
         if key not in self._met:
@@ -136,12 +140,12 @@ class Forms:
                 self._met.clear()
             self._met[key] = None
             return
-        form = self._made(key)
+        form = self._made(key, needed)
         if len(self._forms) >= MOST:
             self._forms.clear()
         self._forms[key] = form
 
-    def _made(self, key: Key) -> Form | None:
+    def _made(self, key: Key, needed: int) -> Form | None:
         between, order = key
         stand_ins = [str(_FIRST + n) for n in order]
         try:
@@ -156,6 +160,7 @@ class Forms:
         return Form(
             tuple([making.reaction(reaction) for reaction in reactions]),
             tuple([_text(show(reaction.schema)) for reaction in reactions]),
+            needed,
             () if timed else tuple([{} for _ in reactions]),
         )
 

@@ -100,13 +100,7 @@ class Laws:
             self._broken.add((law, message))
             self.violations.append(Violation(law, self._reactor.scheduler.now, message))
 
-    # -- what has happened
-
-    def happened(self, kind: str, fields: dict[str, Any]) -> None:
-        """One notice of the reactor."""
-        watch = _WATCHES.get(kind)
-        if watch is not None:
-            watch(self, fields)
+    # -- what has happened (`WATCHES`)
 
     def _asserts(self, fields: dict[str, Any]) -> None:
         self._asserted += 1
@@ -313,7 +307,7 @@ class Laws:
             self.breach(15, f"{running} basic processes run though the reactor is halted")
 
 
-_WATCHES: dict[str, Callable[[Laws, dict[str, Any]], None]] = {
+WATCHES: dict[str, Callable[[Laws, dict[str, Any]], None]] = {
     "added": Laws._adds,
     "asserted": Laws._asserts,
     "completed": Laws._completes,
@@ -324,3 +318,4 @@ _WATCHES: dict[str, Callable[[Laws, dict[str, Any]], None]] = {
     "removed": Laws._removes,
     "retired": Laws._retires,
 }
+"""Which law looks at which notice of the reactor, with its fields."""

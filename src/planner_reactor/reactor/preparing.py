@@ -16,7 +16,7 @@ from planner_reactor.reactor.forms import Durations, Filling, Form, Forms, filli
 from planner_reactor.rs.loading import load
 from planner_reactor.rs.printer import show
 from planner_reactor.rs.reactions import Reaction, reaction_of
-from planner_reactor.rs.terms import Program, Schema, Value
+from planner_reactor.rs.terms import Process, Program, Schema, Value, operands
 from planner_reactor.rs.vocabulary import BUILT_IN, Signature
 from planner_reactor.runtime import Clause
 
@@ -36,8 +36,14 @@ class Prepared(msgspec.Struct, frozen=True):
     reactions: Mapping[int, Reaction] = {}  # by label
     clauses: Mapping[int, str] = {}  # the same in canonical print
     compiled: tuple[Clause, ...] = ()  # and ready to be loaded
+    needed: int = 0  # processes that they may at once be made of as they come to life
     durations: Mapping[int, Durations] = {}  # of those of a form met before
     refusal: RefusedError | None = None
+
+
+def size(process: Process) -> int:
+    """How many processes it may at once be made of, as it comes to life: no more than it has parts."""
+    return 2 + sum(map(size, operands(process)))
 
 
 class Preparing:
@@ -68,9 +74,10 @@ class Preparing:
                 return Prepared(adaptation, refusal=refusal)
             reactions[reaction.label] = reaction
         printed = {label: show(reaction.schema) for label, reaction in reactions.items()}
+        needed = sum([size(reaction.schema.body) for reaction in reactions.values()])
         if found is not None:
-            self._forms.met(found[0])
-        return Prepared(adaptation, reactions, printed, self._compiled([r.schema for r in reactions.values()]))
+            self._forms.met(found[0], needed)
+        return Prepared(adaptation, reactions, printed, self._compiled([r.schema for r in reactions.values()]), needed)
 
     def _of_form(self, adaptation: Adaptation, form: Form, made_of: Filling) -> Prepared:
         made = [make(made_of) for make in form.reactions]
@@ -79,6 +86,7 @@ class Preparing:
             {reaction.label: reaction for reaction in made},
             {reaction.label: show(made_of) for reaction, show in zip(made, form.printed, strict=True)},
             self._compiled([reaction.schema for reaction in made]),
+            form.needed,
             durations={r.label: known for r, known in zip(made, form.durations, strict=False)},
         )
 

@@ -29,7 +29,7 @@ from planner_reactor.reactor.forms import Durations
 from planner_reactor.reactor.freezing import Freezer
 from planner_reactor.reactor.heartbeat import Heartbeat
 from planner_reactor.reactor.journal import Decided, Journal, Left
-from planner_reactor.reactor.laws import Laws
+from planner_reactor.reactor.laws import WATCHES, Laws
 from planner_reactor.reactor.life import Life
 from planner_reactor.reactor.preparing import Prepared, Preparing, Vocabulary
 from planner_reactor.reactor.reactions import Reactions
@@ -269,9 +269,11 @@ class Reactor:
     def notice(self, kind: str, **fields: Any) -> None:
         """One change of the situations or guards: traced, watched by the laws, and acted on."""
         self.trace.record(kind, **fields)
-        self.laws.happened(kind, fields)
+        if (law := WATCHES.get(kind)) is not None:
+            law(self.laws, fields)
         if not self._laws_due:
-            self.settle_laws()
+            self._laws_due = True
+            self.executer.after_step(self._ask_laws)
         if (watch := self._watches.get(kind)) is not None:
             watch(**fields)
 

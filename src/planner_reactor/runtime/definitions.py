@@ -79,7 +79,8 @@ class Definition:
         if constants in clauses:
             raise InputError(f"{self.name}: two clauses have the same head")
         clauses[constants] = clause
-        self._find_only()
+        if len(clauses) == 1:
+            self._find_only()
 
     def remove(self, schema: Schema) -> bool:
         pattern, constants = _pattern(schema)
@@ -89,7 +90,7 @@ class Definition:
         del clauses[constants]
         if not clauses:
             del self._by_constants[pattern]
-        self._find_only()
+            self._find_only()
         return True
 
     def _find_only(self) -> None:
@@ -145,6 +146,8 @@ class Definitions:
 
 
 def _pattern(schema: Schema) -> tuple[tuple[int, tuple[int, ...]], tuple[Value, ...]]:
+    if len(schema.head) == 1 and not isinstance(only := schema.head[0], Parameter):  # as reactions have
+        return (1, (0,)), (only.value,)
     places = tuple(i for i, h in enumerate(schema.head) if not isinstance(h, Parameter))
     constants = tuple(h.value for h in schema.head if not isinstance(h, Parameter))
     return (len(schema.head), places), constants

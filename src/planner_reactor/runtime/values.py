@@ -37,6 +37,8 @@ _SMALL = 1 << 200  # well below the bound on integers of `rs.expressions`
 
 def reader(expression: Expression, slots: Slots, functions: Functions) -> Reader:
     """A closure that gives the value of the expression for a frame."""
+    if expression.__class__ is Variable:  # the commonest
+        return _variable(expression.name, slots(expression.name))
     match expression:
         case Number(value):
             return _constant(value)
