@@ -9,8 +9,9 @@ from types import FrameType
 
 import pytest
 
+from planner_reactor.logic.domain import Domain
 from planner_reactor.planner import Planner, Step
-from planner_reactor.planner.reducing import UNITS
+from planner_reactor.planner.reducing import PATIENCE, UNITS
 from tests.planner.driving import Book, first_adaptations, kitting, perception, planner_without, settle, texts
 from tests.planner.test_altered_domains import with_kinds
 
@@ -140,6 +141,21 @@ def test_a_perception_in_the_middle_of_a_thought_is_acted_on_in_the_next_step() 
     assert step.situation == "LacksP7"
 
 
+@pytest.mark.parametrize("name", ["ACT", "ADD", "AO"])
+def test_a_failure_is_answered_before_a_long_thought_is_thought_to_its_end(name: str) -> None:
+    """The largest situation is still a stub: what is short goes first, and what was thought so far is not lost."""
+    domain = with_kinds(*(f"p{n}" for n in range(100)))
+    planner = Planner(domain, relax=(), verify=False)
+    first_adaptations(planner, 1)
+    planner.perceive(perception("assumption_failure", name))
+    before = units(planner)
+    (answer,) = first_adaptations(planner, 1)
+    assert "FillTray" not in [change.situation for change in answer.changes]
+    assert units(planner) - before <= PATIENCE + 2 * UNITS
+    settle_on(planner)
+    assert texts(planner) == texts(planner_of_failed(domain, [name]))
+
+
 @pytest.mark.parametrize("name", NINE)
 def test_what_was_foreseen_is_not_worked_out_when_it_happens(name: str) -> None:
     planner, _ = planned(5, foresight=True)
@@ -168,6 +184,19 @@ def test_a_reaction_filled_in_is_the_reaction_written_for_itself() -> None:
     for name in names:
         alone = texts(planner_of(with_kinds(name)))
         assert together[f"Lacks{name.title()}"] == alone[f"Lacks{name.title()}"]
+
+
+def planner_of_failed(domain: Domain, names: list[str]) -> Planner:
+    planner = planner_without(domain, names, verify=False)
+    settle_on(planner)
+    return planner
+
+
+def settle_on(planner: Planner) -> None:
+    """Until there is nothing to do; a book would have to know what was issued before."""
+    while (step := planner.step()) is not None:
+        for adaptation in step.adaptations:
+            planner.perceive(perception("adaptation_applied", str(adaptation.id)))
 
 
 def planner_of(domain: object) -> Planner:

@@ -1,6 +1,7 @@
 """What to plan next (R §7.3): failed situations > failed assumptions > active stubs > quiescent stubs.
 
-Among equals what comes first in the text of the reactor. Situations that an adaptation under way touches
+Among equals what comes first in the text of the reactor; what has taken long already comes after the others (its
+`turn`). Situations that an adaptation under way touches
 are put aside until it is answered. Entries that have become out of date (planned meanwhile, or raised) are
 dropped when they come up, so that nothing here depends on how many situations there are.
 """
@@ -17,7 +18,7 @@ from planner_reactor.planner.situations import Situation
 
 FAILED_SITUATION, FAILED_ASSUMPTION, ACTIVE_STUB, QUIESCENT = range(4)
 
-_Entry: TypeAlias = tuple[int, tuple[int, ...], int, Situation]
+_Entry: TypeAlias = tuple[int, int, tuple[int, ...], int, Situation]
 
 
 class Agenda(msgspec.Struct, eq=False):
@@ -32,7 +33,14 @@ class Agenda(msgspec.Struct, eq=False):
     def push(self, segment: Segment) -> None:
         """Something is to be done about this segment."""
         self._count += 1
-        heappush(self._entries, (segment.urgency, segment.path, self._count, segment.situation))
+        heappush(self._entries, (segment.urgency, segment.turn, segment.path, self._count, segment.situation))
+
+    def let_others(self, segment: Segment) -> bool:
+        """It comes after the others that are as urgent; False if there are none that could be worked on."""
+        segment.turn += 1
+        self.push(segment)
+        other = self.next()
+        return other is not None and other is not segment and other.urgency == segment.urgency
 
     def set_aside(self, segment: Segment, adaptation: int) -> None:
         """Nothing can be done about it until this adaptation is answered."""
@@ -65,7 +73,7 @@ class Agenda(msgspec.Struct, eq=False):
         return not any(self._valid(entry) for entries in self._aside.values() for entry in entries)
 
     def _valid(self, entry: _Entry) -> Segment | None:
-        segment = self.model.segments.get(entry[3])
-        if segment is None or not segment.is_open or segment.urgency != entry[0]:
+        segment = self.model.segments.get(entry[-1])
+        if segment is None or not segment.is_open or (segment.urgency, segment.turn) != entry[:2]:
             return None
         return segment

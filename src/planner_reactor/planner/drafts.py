@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import msgspec
+from msgspec.structs import replace
 
 from planner_reactor.planner.beliefs import Beliefs
-from planner_reactor.planner.memory import Key
-from planner_reactor.planner.model import Drafted, Segment
+from planner_reactor.planner.memory import Thought
+from planner_reactor.planner.model import Drafted, Model, Segment
 from planner_reactor.planner.situations import Context, Refinement, Situation
-from planner_reactor.planner.thinking import Work
 
 
 class Draft(msgspec.Struct, eq=False):
@@ -29,7 +29,7 @@ class Draft(msgspec.Struct, eq=False):
     contexts: dict[Situation, tuple[Context, Beliefs]] = msgspec.field(default_factory=dict)  # what each rests on
     spent: int = 0  # units of work
     more: Situation | None = None  # what is refined beyond what must be (`sizing`)
-    thought: tuple[Key, Work[Refinement]] | None = None  # what is being worked out
+    thought: Thought | None = None  # what is being worked out
 
     def __post_init__(self) -> None:
         if self.segment.avoided:
@@ -49,6 +49,13 @@ class Draft(msgspec.Struct, eq=False):
     def to_avoid(self, situation: Situation) -> frozenset[str]:
         """The abstract actions that are not to be used for it."""
         return self.avoided.get(situation, frozenset())
+
+    def context(self, situation: Situation, model: Model) -> Context:
+        """What one of its situations may count on."""
+        own = situation == self.segment.situation
+        context = self.segment.context if own else model.context(situation, self.drafted)
+        avoided = self.to_avoid(situation)
+        return replace(context, forbidden=context.forbidden | avoided) if avoided else context
 
     def add_more(self, refinement: Refinement) -> None:
         """What need not be in it is in it if it has a plan, and nothing that is asked for could make it another."""

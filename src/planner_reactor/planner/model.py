@@ -38,6 +38,7 @@ class Segment(msgspec.Struct):
     pending: int | None = None
     stale: bool = False
     urgency: int = 3  # see agenda
+    turn: int = 0  # so often others came first, because it takes long and a failure is to be answered
     impossible: str = ""
     refusals: int = 0
     avoided: frozenset[str] = frozenset()

@@ -11,8 +11,6 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable
 
-from msgspec.structs import replace
-
 from planner_reactor.link.messages import Adaptation
 from planner_reactor.logic.domain import ActionSchema
 from planner_reactor.logic.formulas import Atom
@@ -23,19 +21,22 @@ from planner_reactor.planner.drafts import Draft
 from planner_reactor.planner.explaining import Record, Subject
 from planner_reactor.planner.goals import guarded, root_schema
 from planner_reactor.planner.issuing import MOST_REFUSALS, Issuer, UnderWay
-from planner_reactor.planner.memory import Memory
+from planner_reactor.planner.memory import Memory, Thought
 from planner_reactor.planner.model import Model, Segment
+from planner_reactor.planner.purposes import purpose, step_of
 from planner_reactor.planner.refinement import refining
 from planner_reactor.planner.relaxing import Assuming
 from planner_reactor.planner.situations import Context, Refinement, Situation
 from planner_reactor.planner.sizing import Sizing, at_once
-from planner_reactor.planner.steps import Step, StepKind
+from planner_reactor.planner.steps import Step
 from planner_reactor.planner.theory import Theory
 from planner_reactor.planner.thinking import advance
 
 MOST_RECORDS = 10_000
 UNITS = 24
 """So much work is done in one step (see `thinking`)."""
+PATIENCE = 4 * UNITS
+"""After so much work on one refinement others have their turn, if a failure is to be answered."""
 
 
 class Reducer:
@@ -158,7 +159,9 @@ class Reducer:
         return None if self._draft is None else self._work_on(self._draft)
 
     def abandon(self) -> None:
-        """Something has changed: what was being drafted is drafted anew."""
+        """Something has changed: what was being drafted is drafted anew; what was being worked out is remembered."""
+        if self._draft is not None and self._draft.thought is not None:
+            self.memory.lay_aside(self._draft.thought)
         self._draft = None
 
     def _next_draft(self) -> Draft | None:
@@ -167,17 +170,11 @@ class Reducer:
                 self.starts[root] = start = self._new_start(root)  # it was held back, and its version may have risen
             if not start.impossible and start.pending is None:
                 return Draft(start, f"goal {start.name}")
-        segment = self._agenda.next()
-        return None if segment is None else Draft(segment, *self._purpose(segment))
-
-    def _purpose(self, segment: Segment) -> tuple[str, str]:
-        if segment.is_stub:
-            return f"refine {segment.name}", ""
-        about = self.assuming.current
-        if about is None:
-            return f"adapt {segment.name}", ""
-        verb = {"normal": "relax", "forced": "give up", "reinstated": "reinstate"}[about.cause]
-        return f"{verb} {about.assumption}: {segment.name}", about.assumption
+        segment, beliefs = self._agenda.next(), self.assuming.beliefs
+        while segment is not None and not segment.turn and self.memory.laid_aside(segment, beliefs):
+            self._agenda.let_others(segment)  # it, or one that is alike, has made others wait already
+            segment = self._agenda.next()
+        return None if segment is None else Draft(segment, *purpose(segment, self.assuming.current))
 
     def _work_on(self, draft: Draft) -> Step:
         """Work on a draft until it is issued, nothing more can be done about it, or so much is done as is
@@ -201,7 +198,17 @@ class Reducer:
             if refinement is not None and not self._take(draft, refinement):
                 break
         self._count(UNITS - left)
-        return self._step("refine", draft)
+        self._let_others(draft)
+        return step_of(draft, self.assuming)
+
+    def _let_others(self, draft: Draft) -> None:
+        """An assumption has failed, and nothing is issued yet: a long thought waits for what is as urgent and short."""
+        thought, begun, about = draft.thought, draft.segment.situation in self.model.segments, self.assuming.current
+        unanswered = about is not None and about.cause == "forced" and not about.adaptations
+        if thought is not None and thought.units >= PATIENCE and unanswered and begun and draft.more is None:
+            thought.units = 0
+            if self._agenda.let_others(draft.segment):
+                self.abandon()
 
     def _count(self, units: int) -> None:
         self.counts["units"] += units
@@ -231,13 +238,13 @@ class Reducer:
             self._agenda.set_aside(segment, holder)
             if segment.situation in self.starts:
                 segment.pending = holder
-            return self._step("refine", draft)
+            return step_of(draft, self.assuming)
         refinements = draft.refinements
         below = [child.situation for child in segment.children]
         below += [c.situation for r in refinements.values() for c in r.children if c.situation not in touched]
         adaptation = self.issuer.issue(draft, difference, self.assuming.beliefs, self.assuming.watched)
         self.starts.pop(segment.situation, None)
-        segment.stale, segment.urgency, segment.asked = False, QUIESCENT, ()
+        segment.stale, segment.urgency, segment.turn, segment.asked = False, QUIESCENT, 0, ()
         for situation in refinements:
             issued = self.model.segments[situation]
             issued.avoided, issued.settled = draft.to_avoid(situation), situation in draft.settled
@@ -250,10 +257,10 @@ class Reducer:
         self.assuming.note(adaptation.id if adaptation else None, done=self.is_done)
         because, segment.because = segment.because, ()
         if adaptation is None:
-            return self._step("refine", draft)
+            return step_of(draft, self.assuming)
         self._record(adaptation, draft, because)
         self.counts["issued"] += 1
-        return self._step("refine", draft, adaptation)
+        return step_of(draft, self.assuming, adaptation)
 
     def _record(self, adaptation: Adaptation, draft: Draft, because: tuple[Because, ...]) -> None:
         """Keep what is needed to explain it."""
@@ -277,11 +284,6 @@ class Reducer:
                 self.mark([caller], QUIESCENT, Because("impossible", segment.name))
         self.assuming.note(None, done=self.is_done)
 
-    def _step(self, kind: StepKind, draft: Draft, *adaptations: Adaptation) -> Step:
-        about = self.assuming.current or (self.assuming.records[-1] if self.assuming.records else None)
-        cause = about.cause if about is not None and draft.assumption else ""
-        return Step(kind, draft.segment.name, draft.assumption, cause, adaptations, draft.purpose)
-
     # ----------------------------------------------------------------------------------------- refinement
 
     def _refine(self, situation: Situation, draft: Draft, units: int) -> tuple[Refinement | None, int]:
@@ -289,32 +291,30 @@ class Reducer:
         they were not enough.
         """
         if draft.thought is None:
-            context, beliefs = self._context(situation, draft), self.assuming.beliefs
+            context, beliefs = draft.context(situation, self.model), self.assuming.beliefs
             draft.contexts[situation] = context, beliefs
             key = self.memory.key(situation, context, beliefs)
             known = self.memory.recall(key, situation, beliefs)
             if known is not None:
                 return known, units - 1
+            draft.thought = self.memory.take_up(key, beliefs)
+        if draft.thought is None:
             schema = self._schema(situation)
-            draft.thought = key, refining(self.theory, beliefs, schema, situation, context, fold=self.issuer.fold)
-        key, work = draft.thought
-        found, left = advance(work, units)
+            work = refining(self.theory, beliefs, schema, situation, context, fold=self.issuer.fold)
+            draft.thought = Thought(key, beliefs, work)
+        thought = draft.thought
+        found, left = advance(thought.work, units)
+        thought.units += units - left
         if found is not None:
             draft.thought = None
-            self.memory.keep(key, found)
+            self.memory.keep(thought.key, found)
+            if found.situation != situation:  # it was begun for another that is alike
+                found = self.memory.recall(thought.key, situation, thought.beliefs)
         return found, left
 
     def _schema(self, situation: Situation) -> ActionSchema:
         root = self._roots.get(situation)
         return root if root is not None else self.theory.domain.schemas[situation.schema]
-
-    def _context(self, situation: Situation, draft: Draft) -> Context:
-        if situation == draft.segment.situation:
-            context = draft.segment.context
-        else:
-            context = self.model.context(situation, draft.drafted)
-        avoided = draft.to_avoid(situation)
-        return replace(context, forbidden=context.forbidden | avoided) if avoided else context
 
     # ------------------------------------------------------------------------------------ what is to be done
 
@@ -344,7 +344,7 @@ class Reducer:
                     segment.because = (*segment.because, because)
                 self._agenda.push(segment)
                 if self._draft is not None and self._draft.segment is not segment:
-                    self._draft = None
+                    self.abandon()
         return segment
 
     def reconsider(self, because: Because, about: Atom | None = None) -> None:
