@@ -164,11 +164,15 @@ def _unions(sets: Iterable[int]) -> list[int]:
 ROWS = _Rows()
 
 
-def _inverses() -> list[int]:
-    """Inverses of all 8192 sets: those of the bases stand side by side, `e` is its own."""
-    odd, even = 0b0101010101010, 0b0010101010101
-    return [(relation & even & 0xFFF) << 1 | (relation & odd) >> 1 | relation & BIT["e"] for relation in range(ALL + 1)]
+class _Inverses(dict[int, int]):
+    """`inverse` of every set that was asked for: those of the bases stand side by side, `e` is its own."""
+
+    def __missing__(self, relation: int) -> int:
+        odd, even = 0b0101010101010, 0b0010101010101
+        found = (relation & even & 0xFFF) << 1 | (relation & odd) >> 1 | relation & BIT["e"]
+        self[relation] = found
+        return found
 
 
-INVERSE = _inverses()
-"""`inverse` as a list."""
+INVERSE = _Inverses()
+"""`inverse` by looking it up; the 8192 of them are not worked out at the start."""
