@@ -16,6 +16,7 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import partial
 from math import inf, isinf
 from typing import Literal
 
@@ -25,6 +26,7 @@ from planner_reactor.errors import DiskError, RefusedError
 from planner_reactor.link.messages import Adaptation
 from planner_reactor.link.surgeries import drained, surgery
 from planner_reactor.reactor.committed import Committed, remember
+from planner_reactor.reactor.contention import refuse_contention
 from planner_reactor.reactor.journal import Begun, Decided, Journal
 from planner_reactor.reactor.preparing import Prepared
 from planner_reactor.reactor.reactions import Reactions
@@ -37,7 +39,7 @@ from planner_reactor.rs.reactions import (
     versions_script,
     wait_script,
 )
-from planner_reactor.rs.terms import Process
+from planner_reactor.rs.terms import Process, Value
 from planner_reactor.runtime import Executer, Root, Scheduler, Timer
 
 ROUNDING = 1e-6
@@ -113,15 +115,24 @@ class Transactions:
     def pending_situations(self) -> frozenset[str]:
         return frozenset(s for t in self.under_way for s in t.situations)
 
+    def staying(self, epoch: int) -> tuple[Transaction, ...]:
+        """What is under way, and would not be revoked by an adaptation of this epoch."""
+        return tuple([t for t in self.under_way if t.adaptation.epoch >= epoch or t.state != "draining"])
+
     def examine(
         self,
-        adaptation: Adaptation,
+        prepared: Prepared,
         killed: tuple[Reaction, ...],
         present: Reactions,
         disabled: Callable[[str], object],
     ) -> None:
-        """Could it stop half-way, or wait for itself? `RefusedError` if so."""
+        """Could it stop half-way, be in the way of another, or wait for itself? `RefusedError` if so."""
+        adaptation = prepared.adaptation
         refuse_unsafe_kills(adaptation, killed)
+        if staying := self.staying(adaptation.epoch):
+            going = {reaction.label for transaction in staying for reaction in transaction.killed}
+            coming = [reaction for transaction in staying for reaction in transaction.reactions]
+            refuse_contention(tuple(prepared.reactions.values()), killed, present, coming, going)
         under_way = [transaction.adaptation for transaction in self.under_way]
         refuse_waiting_for_itself(adaptation, present, under_way, self.retired, disabled)
 
@@ -183,12 +194,22 @@ class Transactions:
     def changed(self, label: int, *, added: bool) -> bool:
         """A reaction was added, removed or retired: was it one of the scripts that did it?"""
         for transaction in self._by_root.values():
+            if transaction.reason:  # it is being taken back, and does nothing
+                continue
             wanted = transaction.adaptation.adds if added else transaction.adaptation.kills
             if label in wanted:
                 transaction.surgery = min(transaction.surgery, self._scheduler.now)
                 (transaction.adds if added else transaction.kills).append(label)
                 return True
         return False
+
+    def left(self, label: Value) -> None:
+        """A reaction ends by itself: who is to kill it would find nothing to kill, and is taken back before that."""
+        for transaction in self._by_root.values():
+            if label in transaction.adaptation.kills and transaction.state == "draining" and not transaction.reason:
+                transaction.reason = "labels"
+                transaction.problem = f"P[{label}], which it kills, has ended by itself meanwhile"
+                self._executer.after_step(partial(self._expire, transaction))
 
     def ended(self, root: Root) -> None:
         """A root of the executer has ended: if it was a script, its transaction is over."""
@@ -205,9 +226,9 @@ class Transactions:
         self.under_way = tuple(self._by_root.values())
         if transaction.timer is not None:
             transaction.timer.cancel()
-        if root.outcome == "stop":
-            transaction.state = "applied"
-            if transaction.adaptation.mode == "versions":
+        if root.outcome == "stop" or transaction.state == "committed":
+            transaction.state = "applied"  # so the journal says: what a halt cut short comes to life with the reset
+            if transaction.adaptation.mode == "versions" and root.outcome == "stop":
                 self._removals.append(transaction)
                 self._remove()
         else:

@@ -81,7 +81,7 @@ def examine(prepare: Callable[[], Prepared], adaptation: Adaptation, standing: S
 
 
 def _identity(adaptation: Adaptation, standing: Standing) -> None:
-    if adaptation.id in standing.taken:
+    if adaptation.epoch == standing.epoch and adaptation.id in standing.taken:
         raise RefusedError("repeated", f"adaptation {adaptation.id} was taken before")
     if adaptation.epoch < standing.epoch:
         raise RefusedError("epoch", f"epoch {adaptation.epoch}, expected at least {standing.epoch}")
@@ -96,9 +96,9 @@ def _versions(adaptation: Adaptation, standing: Standing) -> None:
         version = standing.versions.get(change.situation, 0)
         if change.base != version:
             raise RefusedError("stale", f"{change.situation} is at version {version}, planned against {change.base}")
-        if change.situation in standing.pending:
-            raise RefusedError("pending", f"{change.situation} is being changed by an earlier adaptation")
     names = [change.situation for change in adaptation.changes]
+    if held := [situation for situation in (*names, *adaptation.removed) if situation in standing.pending]:
+        raise RefusedError("pending", f"{held[0]} is being changed by an earlier adaptation")
     if len(set(names)) < len(names):
         raise RefusedError("structure", f"a situation is named twice among {', '.join(names)}")
 

@@ -38,10 +38,11 @@ class BuiltIns:
         reached: Callable[[str, int | None], None] = _unheard,
         told: Callable[[str, tuple[Value, ...]], None] = _unheard,
         commit: Callable[[int], bool] = lambda number: True,
+        by_itself: Callable[[Value], None] = _unheard,
     ) -> None:
         self._waker = ExecuterWaker()
         self.situations = Situations(self._waker, notice)
-        self.guards = Guards(self.situations, self._waker, notice)
+        self.guards = Guards(self.situations, self._waker, notice, by_itself)
         situation_processes = self._processes = Controls(self.situations)
         self._waker.ended_wait = situation_processes.granted
         monitors = Monitors(scheduler, assumptions or {}, read, reached, told)

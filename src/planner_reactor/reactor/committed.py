@@ -87,8 +87,18 @@ class Committed(msgspec.Struct, frozen=True):
         return used if adaptation.epoch <= self.epoch else used.claimed(adaptation.epoch)
 
     def decided(self, number: int, epoch: int) -> Committed:
-        """What it is once an adaptation was applied or came to nothing: its id is spent, if its epoch is not over."""
-        return replace(self, taken=self.taken.with_(number)) if epoch == self.epoch else self
+        """What it is once an adaptation was applied or came to nothing: its id is spent, if its epoch is not over.
+
+        With the first of a later epoch the earlier one is over.
+        """
+        if epoch < self.epoch:
+            return self
+        now = self if epoch == self.epoch else self.claimed(epoch)
+        return replace(now, taken=now.taken.with_(number))
+
+    def spent(self, epoch: int, number: int) -> bool:
+        """Was an adaptation with this id, of this epoch, applied, or did it come to nothing?"""
+        return epoch == self.epoch and number in self.taken
 
     def after(self, adaptation: Adaptation) -> Committed:
         """What it is once this adaptation, which was admitted, has been applied."""

@@ -60,10 +60,12 @@ class Guards:
         situations: Situations,
         waker: Waker,
         notice: Callable[..., None],
+        by_itself: Callable[[Value], None],
     ) -> None:
         self._situations = situations
         self._waker = waker
         self._notice = notice
+        self._by_itself = by_itself
         self._by_label: dict[Value, Guarded] = {}
         self._by_strand: dict[Strand, Guarded] = {}
         self._refused: dict[Strand, Guarded] = {}  # their label was in use when they came to life
@@ -102,13 +104,15 @@ class Guards:
         self._retry(guarded)
         return None
 
-    def over(self, strand: Strand) -> None:
-        """What it guards has ended by itself, or the whole was aborted."""
+    def over(self, strand: Strand, *, killed: bool = False) -> None:
+        """What it guards was killed; or it has ended by itself, or the whole was aborted."""
         self._refused.pop(strand, None)
         guarded = self._by_strand.pop(strand, None)
         if guarded is not None:
             del self._by_label[guarded.label]
             self._situations.serving.forget_guard(guarded.label)
+            if not killed:
+                self._by_itself(guarded.label)
             self._notice("removed", label=guarded.label)
             self._retry(guarded)
 
@@ -129,7 +133,7 @@ class Guards:
             self._waker.watch(guarded.label, lambda: self._retry(guarded))
             return None
         self._waker.ended(guarded.strand, True, (), "")
-        self.over(guarded.strand)
+        self.over(guarded.strand, killed=True)
         return STOPPED
 
     def _retire(self, strand: Strand, arguments: tuple[Value, ...]) -> Outcome:

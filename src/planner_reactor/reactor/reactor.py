@@ -28,7 +28,7 @@ from planner_reactor.reactor.enquiries import repeated, standing
 from planner_reactor.reactor.forms import Durations
 from planner_reactor.reactor.freezing import Freezer
 from planner_reactor.reactor.heartbeat import Heartbeat
-from planner_reactor.reactor.journal import Decided, Journal, Left
+from planner_reactor.reactor.journal import Journal, Left
 from planner_reactor.reactor.laws import WATCHES, Laws
 from planner_reactor.reactor.life import Life
 from planner_reactor.reactor.preparing import Prepared, Preparing, Vocabulary
@@ -91,6 +91,7 @@ class Reactor:
         built_in = BuiltIns(
             scheduler, self.host.assumptions, notice=self.notice, read=self.assumption_sensed,
             reached=self._stub_reached, told=self._information, commit=self._commit,
+            by_itself=lambda label: self.transactions.left(label),
         )  # fmt: skip
         self.situations = built_in.situations
         self.executer = Executer(
@@ -107,12 +108,12 @@ class Reactor:
         self._preparing = Preparing(self.vocabulary, self.executer.compiled)
         self._limits = {name: process.limit for name, process in self.host.processes.items()}
         self._durations: dict[int, Durations] = {}  # how long reactions may take, by label
-        self.transactions = Transactions(self.executer, scheduler, self.journal, self._finished)
+        self.transactions: Transactions = Transactions(self.executer, scheduler, self.journal, self._finished)
         self.assumptions = Assumptions(scheduler, self.journal, self.situations, self._assumption_told)
         self.readings: Readings = Readings(scheduler, self.host, self.assumptions, self._assumption_told)
         self.host.listen(self.readings.noticed)
         self.freezer, self.storms, self.heartbeat = Freezer(self), Storms(self, intensity), Heartbeat(self)
-        self._life, self.doubts = Life(self, EQUATION_3), Doubts(scheduler, self.journal)
+        self._life, self.doubts = Life(self, EQUATION_3), Doubts(self)
 
     def start(self) -> Root:
         """Begin to act, on what the journal says: with no reactions yet, if it is new.
@@ -161,21 +162,17 @@ class Reactor:
                 raise RefusedError("text", "it holds characters that are no text, or numbers beyond 64 bits")
             if self.halted:
                 raise RefusedError("halted", "the reactor is halted, expected a reset first")
-            stands = standing_of(
-                self.journal.state.committed, self.reactions, self.transactions.pending_situations, self.host.functions
-            )
+            pending = frozenset(s for t in self.transactions.staying(adaptation.epoch) for s in t.situations)
+            stands = standing_of(self.journal.state.committed, self.reactions, pending, self.host.functions)
             prepared = examine(lambda: before or self.prepare(adaptation), adaptation, stands)
             killed = tuple([self.reactions[label] for label in adaptation.kills])
-            self.transactions.examine(adaptation, killed, self.reactions, self.situations.disabled_by)
+            self.transactions.examine(prepared, killed, self.reactions, self.situations.disabled_by)
             bound = self.bound(adaptation)
             self.transactions.revoke(adaptation.epoch)
             reactions = self.transactions.begin(prepared, killed, bound).reactions
         except RefusedError as refusal:
-            committed = self.journal.state.committed
-            if sound and adaptation.epoch == committed.epoch and adaptation.id not in committed.taken:
-                decided = Decided(adaptation.id, "refused", self.scheduler.now, adaptation.epoch)
-                self.journal.note(decided, sync=False)
-            self._refused(adaptation, refusal.reason, str(refusal))
+            spent = sound and self.doubts.spend(adaptation, refusal.reason)
+            self._refused(adaptation, refusal.reason, str(refusal), doubtful=spent)
             return
         self._durations.update(prepared.durations)
         versions = self.journal.state.committed.versions
@@ -203,11 +200,10 @@ class Reactor:
             if reaction.situation and reaction.spawns:
                 self.situations.spawned.add(reaction.situation)
 
-    def _refused(self, refused: Adaptation, reason: str, message: str, *, doubtful: bool = False) -> None:
+    def _refused(self, refused: Adaptation, reason: str, message: str, *, doubtful: bool = True) -> None:
         self.counts["refused"] += 1
         self.trace.record("adaptation_refused", id=refused.id, reason=reason, message=message)
-        told: dict[str, Any] = {"cause": reason, "values": (message,), "epoch": refused.epoch}
-        self.doubts.settle(lambda: self.perceive("adaptation_refused", str(refused.id), **told), doubtful=doubtful)
+        self.doubts.tell("adaptation_refused", refused, reason, message, doubtful=doubtful)
 
     def _commit(self, number: int) -> bool:
         """COMMIT[number]: from here on the adaptation counts, and what now rests on a failed assumption waits."""
@@ -235,11 +231,11 @@ class Reactor:
             return
         self._forget(r.label for r in transaction.reactions)
         if transaction.state == "refused":
-            self._refused(adaptation, (why := transaction.reason), transaction.problem, doubtful=why == "disk")
+            self._refused(adaptation, transaction.reason, transaction.problem)
             return
         self.counts["timed_out"] += 1
         self.trace.record("adaptation_timed_out", id=adaptation.id, bound=transaction.limit)
-        self.perceive("adaptation_timed_out", str(adaptation.id), cause="TIMEOUT", epoch=adaptation.epoch)
+        self.doubts.tell("adaptation_timed_out", adaptation, "TIMEOUT")
 
     def _applied(self, transaction: Transaction) -> None:
         adaptation = transaction.adaptation

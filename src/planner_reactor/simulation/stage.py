@@ -33,6 +33,9 @@ from planner_reactor.trace import Event, Trace
 CALM = 260.0
 """Seconds after which all must be resolved, once faults have ceased: the longest deed, a deadline, a few rounds."""
 
+UNDERWAY = 1.0
+"""Seconds that a message may be on its way over a link that is sound: a resend or two."""
+
 POINT_OF: dict[str, Point] = {
     "adaptation_received": "received", "adaptation_applied": "applied", "adaptation_refused": "refused",
     "adaptation_timed_out": "timed_out", "draining": "draining", "inhibited": "inhibited", "removed": "removed",
@@ -87,7 +90,13 @@ class Stage:
         with self.clock:
             self._run(self.case.seconds)
             self._cease()
+            self._run(self.case.seconds + CALM - UNDERWAY)
+            perceived = self.side, self.side.perceptions.sent if self.side else 0
+            asked = self.planner, len(self.planner.sent) if self.planner else 0
             self._run(self.case.seconds + CALM)
+        for what, (side, given), still in (("perceptions", perceived, self.side), ("requests", asked, self.planner)):
+            if side is not None and side is still:  # the world goes on: there may be something new all the time
+                self.watch.arrived(what, given, side)
         self.rest()
         if self.side is not None:
             self.side.reactor.laws.check()
@@ -109,7 +118,7 @@ class Stage:
 
     def rest(self) -> None:
         """Faults have ceased for long enough: is everything resolved?"""
-        self.watch.at_rest(self.side, sum(end.unacknowledged for end in self.wire.ends.values()))
+        self.watch.at_rest(self.side)
 
     def _sum_up(self) -> None:
         self.counting.sum_up()

@@ -17,7 +17,7 @@ from planner_reactor.reactor.storms import COUNTED, Intensity
 from planner_reactor.runtime import Scheduler
 from planner_reactor.simulation.books import Book, Key
 from planner_reactor.simulation.sensors import CAUTIONS, PERIOD, Read, caution_of
-from planner_reactor.simulation.sides import ReactorSide
+from planner_reactor.simulation.sides import PlannerSide, ReactorSide
 from planner_reactor.simulation.workshop import BEAT
 from planner_reactor.trace import Event
 
@@ -222,7 +222,13 @@ class Watch:
             self.breach(11, problem)
         return True
 
-    def at_rest(self, side: ReactorSide | None, owed: int) -> None:
+    def arrived(self, what: str, before: int, side: ReactorSide | PlannerSide) -> None:
+        """Law 17: of what one side has had to say the first so many have come to the other."""
+        unacknowledged = 0 if side.session is None else side.session.unacknowledged
+        if (come := len(side.sent) - unacknowledged) < before:
+            self.breach(17, f"{before - come} {what} are on the way, and have been for a while")
+
+    def at_rest(self, side: ReactorSide | None) -> None:
         """Law 17: faults have ceased and the planner answered; everything is resolved, and both books agree."""
         if not self.agreed(side):
             return
@@ -234,7 +240,5 @@ class Watch:
             held = [s.name for s in reactor.situations.held]
             halted = ", and it is halted" if reactor.halted else ""
             self.breach(17, f"{held} are held back, {list(reactor.failed)} are thought to fail{halted}")
-        if owed or len(side.perceptions):
-            self.breach(17, f"{owed} messages and {len(side.perceptions)} perceptions are on the way")
         if self._last_beat is None or self.scheduler.now - self._last_beat > BEAT + LATE:
             self.breach(12, "the reaction that beats is not heard")
