@@ -199,9 +199,9 @@ class Laws:
             self.breach(13, problem)
         if self._disabled_since or self._retired or reactor.failed:
             self._disabled()
-        for assumption in reactor.readings.disbelieved():
-            self.breach(14, f"{assumption} was read to fail as often as it takes, and counts as holding")
-        if reactor.halted:
+        if reactor.readings.failing:
+            self._disbelieved()
+        if reactor.journal.state.committed.halted:
             self._halted()
 
     def _kept_promises(self) -> None:
@@ -238,9 +238,14 @@ class Laws:
 
     def _owned(self) -> None:
         """Law 5: every inhibition has exactly one live owner."""
+        alive: Hashable = None  # mostly one owns them all
         for situation in self._reactor.situations.held:
             for inhibition in situation.inhibitions:
-                if not self._reactor.is_live_owner(inhibition.owner):
+                if inhibition.owner is alive:
+                    continue
+                if self._reactor.is_live_owner(inhibition.owner):
+                    alive = inhibition.owner
+                else:
                     self.breach(5, f"{situation.name} is inhibited by {named(inhibition.owner)}, which is gone")
 
     def _durable(self, under_way: tuple[Transaction, ...]) -> None:
@@ -300,6 +305,11 @@ class Laws:
                     if instance.version <= newest and not instance.gone:
                         self.breach(14, f"instance {instance.number} of {name} is of an old version that rests on a "
                                         "failed assumption, and is not given up")  # fmt: skip
+
+    def _disbelieved(self) -> None:
+        """Law 14: what its sensor says to fail, as often as it takes, counts as failed."""
+        for assumption in self._reactor.readings.disbelieved():
+            self.breach(14, f"{assumption} was read to fail as often as it takes, and counts as holding")
 
     def _halted(self) -> None:
         """Law 15: after HALT no basic process runs, until a reset."""

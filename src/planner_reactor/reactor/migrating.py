@@ -24,10 +24,10 @@ def refuse_lost_arguments(
     functions: Mapping[str, Callable[..., Value]],
 ) -> None:
     """`RefusedError` (reason migrate) if a new reaction would be given arguments that it does not take."""
-    killed = [present[label] for label in adaptation.kills]
+    before = _taken([present[label] for label in adaptation.kills])
+    after = _taken(new)
     for change in adaptation.changes:
-        old = _taken(r for r in killed if r.situation == change.situation)
-        now = _taken(r for r in new if r.situation == change.situation)
+        old, now = before.get(change.situation), after.get(change.situation)
         if change.migrate is not None:
             _migrates(change, adaptation.mode, old, now, functions)
         elif old is not None and now is not None and old != now:
@@ -37,14 +37,16 @@ def refuse_lost_arguments(
             _asserted(change.situation, now, (*staying, *new))
 
 
-def _taken(reactions: Iterable[Reaction]) -> int | None:
-    """How many arguments the reactions of one situation take; None if there are none, or they look at none."""
-    counts = []
+def _taken(reactions: Iterable[Reaction]) -> dict[str, int]:
+    """How many arguments the reactions of each situation take; of some there are none, or they look at none."""
+    counts: dict[str, int] = {}
     for reaction in reactions:
-        condition = operands(reaction.schema.body)[0]
-        assert isinstance(condition, Call)
-        counts.append(len(condition.results) - 1)
-    return max(counts) if counts and max(counts) >= 0 else None
+        if reaction.situation is not None:
+            condition = operands(reaction.schema.body)[0]
+            assert isinstance(condition, Call)
+            if condition.results:
+                counts[reaction.situation] = max(len(condition.results) - 1, counts.get(reaction.situation, 0))
+    return counts
 
 
 def _changes(situation: str, adaptation: Adaptation, old: int, now: int) -> None:

@@ -77,7 +77,8 @@ class Preparing:
         needed = sum([size(reaction.schema.body) for reaction in reactions.values()])
         if found is not None:
             self._forms.met(found[0], needed)
-        return Prepared(adaptation, reactions, printed, self._compiled([r.schema for r in reactions.values()]), needed)
+        compiled = self._compiled([reaction.schema for reaction in reactions.values()])
+        return Prepared(adaptation, reactions, printed, compiled, needed)
 
     def _of_form(self, adaptation: Adaptation, form: Form, made_of: Filling) -> Prepared:
         made = [make(made_of) for make in form.reactions]

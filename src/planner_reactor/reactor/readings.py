@@ -69,7 +69,7 @@ class Readings:
         self._told = told
         self._minds: dict[str, Mind] = {}
         self.doubts = 0  # readings that were stale or stuck
-        self._failing: dict[str, int] = {}  # of those that count as holding: readings in a row that say it fails
+        self.failing: dict[str, int] = {}  # of those that count as holding: readings in a row that say it fails
 
     def mind(self, assumption: str) -> Mind:
         if (mind := self._minds.get(assumption)) is None:
@@ -88,7 +88,7 @@ class Readings:
             return
         mind.recent.append(holds)
         if holds:
-            self._failing.pop(assumption, None)
+            self.failing.pop(assumption, None)
             if returns and assumption in self._assumptions.failed:
                 mind.held_since = self._scheduler.now if mind.held_since is None else mind.held_since
                 self._holds(assumption, mind)
@@ -96,13 +96,13 @@ class Readings:
         mind.held_since = None
         if not fails:
             return
-        self._failing[assumption] = self._failing.get(assumption, 0) + 1
+        self.failing[assumption] = self.failing.get(assumption, 0) + 1
         if assumption in self._assumptions.failed or mind.recent.count(False) >= mind.caution.fails:
             self._fails(assumption, mind)
 
     def disbelieved(self) -> list[str]:
         """The assumptions that were read to fail as often as it takes and count as holding: none (law 14)."""
-        return [a for a, times in self._failing.items() if times >= self.mind(a).caution.fails]
+        return [a for a, times in self.failing.items() if times >= self.mind(a).caution.fails]
 
     def noticed(self, assumption: str, holds: bool, evidence: str) -> None:
         """A process noticed by itself: a failure is sent again while something rests on it (nobody asks)."""
@@ -127,7 +127,7 @@ class Readings:
         tells = not news or now >= mind.told + mind.caution.hold_off - TIE
         if tells and news:
             mind.told, mind.told_failing = now, True
-        self._failing.pop(assumption, None)
+        self.failing.pop(assumption, None)
         self._assumptions.sensed(assumption, False, tell=tells)
         if not tells:
             self._later(assumption, mind, mind.told + mind.caution.hold_off)
