@@ -112,7 +112,7 @@ def losing(patch: Patch) -> None:
     def begin(self: Situations, situation: Any, *rest: Any) -> None:
         usual(self, situation, *rest)
         if situation.name == "part":
-            self._instances.popitem()
+            self.instances.popitem()
 
     patch.setattr(Situations, "_begin", begin)
 

@@ -181,20 +181,29 @@ class Laws:
     # -- how things stand
 
     def check(self) -> None:
-        """Ask every law about the present state: cheap enough to be asked after each event."""
+        """Ask every law about the present state: cheap enough to be asked after each event.
+
+        What a law says is looked at here; its method finds the words for a breach.
+        """
         reactor = self._reactor
-        under_way = reactor.transactions.under_way
+        under_way, situations = reactor.transactions.under_way, reactor.situations
         if self._promised:
             self._kept_promises()
         if under_way:
             self._atomic(under_way)
-        if reactor.situations.holds:
+        if situations.held_by:
             self._owned()
         self._durable(under_way)
         channel = reactor.perceptions
         if channel.sent != channel.taken + len(channel):
             self._perceptions()
-        self._balanced(len(under_way))
+        if self._asserted != self._ended + len(situations.instances):
+            self._instances()
+        counts = reactor.counts
+        if counts["received"] != counts["applied"] + counts["refused"] + counts["timed_out"] + len(under_way):
+            self.breach(11, f"adaptations: {counts}")
+        if self.ledgers:
+            self._balanced()
         if (problem := reactor.over_budget()) is not None:  # law 13: instances and processes stay within their budgets
             self.breach(13, problem)
         if self._disabled_since or self._retired or reactor.failed:
@@ -275,15 +284,13 @@ class Laws:
         if channel.sent != channel.taken + len(channel):
             self.breach(10, f"{channel.sent} perceptions sent, {channel.taken} taken, {len(channel)} waiting")
 
-    def _balanced(self, under_way: int) -> None:
-        """Law 11: all ledgers balance."""
+    def _instances(self) -> None:
+        """Law 11: what was asserted has ended, or is alive."""
         live = len(self._reactor.situations.instances)
-        if self._asserted != self._ended + live:
-            self.breach(11, f"instances: {self._asserted} asserted, {self._ended} ended, {live} live")
-        counts = self._reactor.counts
-        settled = counts["applied"] + counts["refused"] + counts["timed_out"]
-        if counts["received"] != settled + under_way:
-            self.breach(11, f"adaptations: {counts}")
+        self.breach(11, f"instances: {self._asserted} asserted, {self._ended} ended, {live} live")
+
+    def _balanced(self) -> None:
+        """Law 11: all further ledgers balance."""
         for ledger in self.ledgers:
             if problem := ledger():
                 self.breach(11, problem)

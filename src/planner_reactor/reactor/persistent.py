@@ -65,6 +65,11 @@ class Persistent(Mapping[K, V]):
             version = version._newer  # type: ignore[assignment]  # it holds nothing, so there is a newer one
         return version._held[key]
 
+    def get(self, key: K, default: V | None = None) -> V | None:  # type: ignore[override]  # of a type of its own too
+        if self._held is not None:
+            return self._held.get(key, default)
+        return super().get(key, default)
+
     def __contains__(self, key: object) -> bool:
         return key in self._held if self._held is not None else super().__contains__(key)
 

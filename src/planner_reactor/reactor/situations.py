@@ -43,10 +43,10 @@ class Situations:
         self.flipped: Callable[[str], None] = lambda name: None  # told when a situation is disabled, or enabled again
         self.awaited: Callable[[str], bool] = lambda name: False  # does anybody wait for it to be disabled?
         self._by_name: dict[str, Situation] = {}
-        self._instances: dict[int, Instance] = {}
+        self.instances: dict[int, Instance] = {}
         self._awaited: dict[Strand, Instance] = {}
         self._queued: dict[Strand, QueuedAssert] = {}
-        self._held_by: dict[Hashable, list[Situation]] = {}  # what an owner inhibits, in the order in which it did
+        self.held_by: dict[Hashable, list[Situation]] = {}  # what an owner inhibits, in the order in which it did
         self.asserted = 0  # how many instances there ever were
         self._tickets = 0
         self.versions = Versions()
@@ -62,18 +62,9 @@ class Situations:
         return iter(self._by_name.values())
 
     @property
-    def instances(self) -> dict[int, Instance]:
-        return self._instances
-
-    @property
     def held(self) -> list[Situation]:
         """The situations that something inhibits."""
-        return list(dict.fromkeys([s for held in self._held_by.values() for s in held])) if self._held_by else []
-
-    @property
-    def holds(self) -> bool:
-        """Has anything been inhibited by an owner that is not gone?"""
-        return bool(self._held_by)
+        return list(dict.fromkeys([s for held in self.held_by.values() for s in held])) if self.held_by else []
 
     def is_disabled(self, name: str, assumption: str) -> bool:
         return any(held.owner == ("assumption", assumption) for held in self.named(name).inhibitions)
@@ -84,7 +75,7 @@ class Situations:
         return str(owners[0][1]) if owners else None  # type: ignore[index]  # ("assumption", name)
 
     def get(self, situation: str, number: object) -> Instance | None:
-        instance = self._instances.get(number) if isinstance(number, int) else None
+        instance = self.instances.get(number) if isinstance(number, int) else None
         return instance if instance is not None and instance.situation.name == situation else None
 
     # -- ASSERT, REASSERT
@@ -119,7 +110,7 @@ class Situations:
         self.asserted += 1
         version = self.versions.newest(situation.name)
         instance = Instance(self.asserted, situation, arguments, owner, strand, again, version)
-        situation.instances[instance.number] = self._instances[instance.number] = instance
+        situation.instances[instance.number] = self.instances[instance.number] = instance
         if strand is not None:
             self._awaited[strand] = instance
         if owner is not None:
@@ -233,7 +224,7 @@ class Situations:
     def _complete(self, instance: Instance | None) -> None:
         """Ended, with its bodies and descendants: the await returns; then the same for its owner."""
         while instance is not None and instance.status != "on" and not instance.bodies and not instance.children:
-            if self._instances.pop(instance.number, None) is None:
+            if self.instances.pop(instance.number, None) is None:
                 return
             situation, owner = instance.situation, instance.owner
             del situation.instances[instance.number]
@@ -344,7 +335,7 @@ class Situations:
 
     def _inhibit(self, situation: Situation, owner: Hashable, kind: Kind) -> None:
         situation.inhibitions.append(Inhibition(owner, kind))
-        self._held_by.setdefault(owner, []).append(situation)
+        self.held_by.setdefault(owner, []).append(situation)
         situation.held_back += kind != "inhibit"
         situation.disabled += kind == "assumption"
         self._notice("inhibited", situation=situation.name, owner=named(owner), because=kind)
@@ -358,7 +349,7 @@ class Situations:
             held = situation.inhibitions[index]
             if held.owner == owner:
                 del situation.inhibitions[index]
-                self._held_by[owner].remove(situation)
+                self.held_by[owner].remove(situation)
                 situation.held_back -= held.kind != "inhibit"
                 situation.disabled -= held.kind == "assumption"
                 self._notice("uninhibited", situation=name, owner=named(owner))
@@ -385,9 +376,9 @@ class Situations:
 
     def root_ended(self, owner: Hashable) -> None:
         """What an owner still holds when it ends is released (law 5)."""
-        for situation in list(self._held_by.get(owner, ())):
+        for situation in list(self.held_by.get(owner, ())):
             self.uninhibit(situation.name, owner)
-        self._held_by.pop(owner, None)
+        self.held_by.pop(owner, None)
 
     def _release(self, situation: Situation) -> None:
         if not situation.held_back:

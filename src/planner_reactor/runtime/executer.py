@@ -246,8 +246,7 @@ class Executer:
 
     def after_step(self, told: Callable[[], object]) -> None:
         """Call `told` once, as soon as everything that belongs to the present step is done."""
-        self._kernel.put_off(told)
-        self._kernel.arm()
+        self._kernel.after_step(told)
 
     def watch(self, label: Value, told: Callable[[], object]) -> None:
         """Call `told` after each step in which something below the guard `label` may have come to rest."""

@@ -293,6 +293,13 @@ class Kernel:
         self._later.append(action)
         self.due = True
 
+    def after_step(self, action: Callable[[], object]) -> None:
+        """The same, from wherever it is called."""
+        self._later.append(action)
+        self.due = True
+        if not self._draining:
+            self.arm()
+
     # -- what waits for something to come to rest
 
     def watch(self, label: Value, told: Callable[[], object]) -> None:
