@@ -33,6 +33,10 @@ SECOND = Adaptation(
     kills=(2,),
     adds=(3,),
 )
+EXPLORED = replace(
+    SECOND, definitions="P[3] = SIT[part]<k> :; (~(if Do then SUCCEED[part, k] else (Do ; ABORT)) : FAIL[part, k])"
+)
+"""An exchange of one reaction for another that ends in two ways, which no rule knows to be right."""
 THIRD = replace(SECOND, id=3, definitions=SECOND.definitions.replace("P[3]", "P[4]"), kills=(3,), adds=(4,))
 
 
@@ -51,7 +55,13 @@ def gate(*sent: Adaptation) -> Gate:
 def test_what_adds_to_nothing_needs_no_look_and_is_remembered() -> None:
     made = gate(FIRST)
     assert not made.verifier.seen
-    assert made.examine(SECOND).states > 0
+    assert made.examine(EXPLORED).states > 0
+
+
+def test_one_reaction_exchanged_for_another_is_known_to_be_right() -> None:
+    made = gate(FIRST)
+    assert made.examine(SECOND).holds
+    assert not made.verifier.seen
 
 
 def test_what_claims_to_be_new_and_is_not_is_looked_at() -> None:
@@ -142,14 +152,14 @@ def test_what_is_held_goes_on_when_something_is_perceived_and_is_looked_at_anew_
     stub = "P[9] = SIT[work]<k> :; (Do ; FAIL[work, k])"
     beside = replace(SECOND, id=9, kills=(1,), adds=(9,), changes=(Change(situation="work", base=1),), definitions=stub)
     assert made.examine(beside).holds
-    assert made.look(Step("refine", adaptations=(SECOND,))) is None
+    assert made.look(Step("refine", adaptations=(EXPLORED,))) is None
     made.perceive(perception("adaptation_refused", 9))
     looked = None
     while looked is None:
         assert made.held is not None
         looked = made.look_on()
     ((adaptation, verdict),) = looked[1]
-    assert (adaptation, verdict.holds, made.held) == (SECOND, True, None)
+    assert (adaptation, verdict.holds, made.held) == (EXPLORED, True, None)
 
 
 def test_a_planner_that_forgets_to_drain_is_stopped(monkeypatch: pytest.MonkeyPatch) -> None:

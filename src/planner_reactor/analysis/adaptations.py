@@ -12,6 +12,7 @@ import re
 from collections.abc import Hashable, Iterable, Sequence
 from math import inf, isinf
 
+from planner_reactor.analysis.exchanges import is_exchange
 from planner_reactor.analysis.forms import Known
 from planner_reactor.analysis.looking import Looking, finish
 from planner_reactor.analysis.permission import Environment, Verdict
@@ -50,12 +51,17 @@ OPEN = {name: Signature(name, window=(0.0, inf)) for name in ("Works", "Asks")}
 
 
 class Verifier:
-    """Verifies adaptations of one reactor, and remembers the shapes that it has seen."""
+    """Verifies adaptations of one reactor, and remembers the shapes that it has seen.
+
+    With `proven` what is right whatever the reactions do (`exchanges`) is not explored.
+    """
 
     def __init__(
-        self, environment: Environment | None = None, *, mode: str = "drain", small: int = SMALL, limit: int = LIMIT
-    ) -> None:
+        self, environment: Environment | None = None, *, mode: str = "drain", small: int = SMALL, limit: int = LIMIT,
+        proven: bool = False,
+    ) -> None:  # fmt: skip
         self.environment = environment
+        self._proven = proven and mode == "drain"
         self._small = min(small, SMALL_VERSIONS) if mode == "versions" else small
         self.seen: dict[Slice, Checked] = {}
         self.right: set[Hashable] = set()  # shapes of which everything holds, whatever the bound
@@ -103,6 +109,8 @@ class Verifier:
         self, before: list[Reaction], coming: list[Reaction], surgery: Surgery, bound: float | None
     ) -> Looking[Verdict]:
         part = sliced(before, coming, surgery)
+        if self._proven and is_exchange(part.slice):
+            return _verdict(RIGHT, bound, part, surgery, states=0)
         if (known := self.seen.get(part.slice)) is not None:
             return _verdict(known, bound, part, surgery, states=0)
         try:
@@ -143,6 +151,8 @@ class Verifier:
         Versions have many states, and no script of theirs depends on what a body does: where there are more than a few,
         what is known of every small reactor stands for them (docs/decisions/0030).
         """
+        if self._proven and is_exchange(part):
+            return RIGHT
         if self._mode != "versions":
             return (yield from _looking(part, self._mode, self._limit))
         try:

@@ -74,7 +74,7 @@ class Gate:
         """What looks at adaptations, and remembers the shapes that it has seen."""
         from planner_reactor.analysis.adaptations import Verifier
 
-        return Verifier(self._environment, mode=self._mode)
+        return Verifier(self._environment, mode=self._mode, proven=True)
 
     @cached_property
     def _forms(self) -> Forms:
