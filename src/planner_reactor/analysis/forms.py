@@ -11,6 +11,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 
+from planner_reactor.analysis.looking import Looking, finish
 from planner_reactor.analysis.slicing import is_monitor, unknown_names
 from planner_reactor.errors import RSError
 from planner_reactor.rs.parser import parse_program
@@ -24,6 +25,10 @@ NAME = re.compile(r"(?<![\w.])[^\W\d]\w*", re.ASCII)
 RESERVED = frozenset({"if", "then", "else"})
 SPEAKS = frozenset({"SIT", "ASSERT", "REASSERT", "SUCCEED", "FAIL"})
 """The leaves whose first argument is the name of a situation that a slice may keep."""
+
+
+PAUSE = 500
+"""To read so many characters is work enough at a time: a third of a millisecond."""
 
 
 class Form:
@@ -73,8 +78,17 @@ class Forms:
 
     def read(self, definitions: str, *, file: str = "<text>") -> list[Known]:
         """The reactions among the definitions. Raises `RSError` if they cannot be read."""
-        found = []
+        return finish(self.reading(definitions, file=file))
+
+    def reading(self, definitions: str, *, file: str = "<text>") -> Looking[list[Known]]:
+        """The same, with a pause after every `PAUSE` characters, or one longer clause."""
+        found: list[Known] = []
+        since = 0
         for line in definitions.splitlines():
+            since += len(line)
+            if since > PAUSE:
+                since = len(line)
+                yield
             clause = CLAUSE.fullmatch(line)
             known = None if clause is None else self._plain(int(clause[1]), clause[2], line)
             if known is None and line.strip():

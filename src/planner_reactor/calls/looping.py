@@ -6,8 +6,8 @@ the caller gives is read and checked before the first event; then the trace is o
 
 from __future__ import annotations
 
-import gc
 from collections.abc import Callable
+from contextlib import nullcontext
 from pathlib import Path
 from typing import Any, Final, TypedDict, Unpack, cast, get_args
 
@@ -29,6 +29,7 @@ from planner_reactor.link.messages import Mode
 from planner_reactor.logic.reader import read_domain
 from planner_reactor.planner import Planner
 from planner_reactor.runtime import Host, Scheduler, VirtualClock, WallClock
+from planner_reactor.runtime.garbage import seldom_collected
 from planner_reactor.trace import Trace
 from planner_reactor.workcell.domains import SHIPPED, shipped_domain, with_kit
 from planner_reactor.workcell.faults import FaultSchedule, faults_from
@@ -143,12 +144,11 @@ def _run(text: str, file: str, host: HostSource, goal: str | None, given: _Optio
         outputs.attach(made.trace)
         if given.clock == "wall":
             made.trace.record("not_deterministic", because="the clock is the wall clock")
-            gc.collect()
-            gc.freeze()  # the collector looks no more at what was loaded: ten milliseconds at any instant
         late = LATENESS if given.clock == "wall" else 0.0
         monitor = attend(made.reactor, lateness=late) if given.conform else None
         given.watch(made)
-        made.run(until=given.until)
+        with seldom_collected() if given.clock == "wall" else nullcontext():
+            made.run(until=given.until)
         # a host of our own is simulation alone; what another one would do twice we cannot know
         if host == KITTING_HOST and given.clock == "virtual" and made.planner_time.deterministic:
             again, *_ = _prepared(text, file, host, goal, replace(given, told=lambda line: None))

@@ -111,7 +111,7 @@ class Gate:
         yield from self._loading()
         yield from self._reading()
         try:
-            new = self._reactions(adaptation)
+            new = yield from self._reactions(adaptation)
             yield
         except RSError as problem:
             return self._withhold(adaptation, Verdict(safe=False, why=str(problem)))
@@ -203,14 +203,14 @@ class Gate:
     def _reading(self) -> Looking[None]:
         """Read what was not looked at, with a pause after every adaptation."""
         while self._unread:
-            for reaction in self._reactions(self._unread[0]):
+            for reaction in (yield from self._reactions(self._unread[0])):
                 self._standing.add(reaction)
             del self._unread[0]
             yield
 
-    def _reactions(self, adaptation: Adaptation) -> list[Known]:
+    def _reactions(self, adaptation: Adaptation) -> Looking[list[Known]]:
         """The reactions that it adds, in the order of its adds."""
-        read = self._forms.read(adaptation.definitions, file=f"<adaptation {adaptation.id}>")
+        read = yield from self._forms.reading(adaptation.definitions, file=f"<adaptation {adaptation.id}>")
         found = {reaction.label: reaction for reaction in read}
         return [found[label] for label in adaptation.adds if label in found]
 
