@@ -6,6 +6,7 @@ anywhere, and then, from `receive` of what is prepared,
     swap      asked for by the world, while nothing else happens: until the loop has nothing left to do
     inside    asked for by a reaction that acts: until the swap is in effect; that reaction goes on meanwhile
     thread    posted by another thread, one after the other: until the swap is in effect; on the wall clock as well
+    same      work that is always the same, between swaps: what of the spread is the machine's
 
 After every swap it is asked whether a bystander began again, an event or a perception was lost, or anything was left
 behind (`SwapCell.check`), of every segment every `WALK` swaps; it has to be nothing.
@@ -34,11 +35,14 @@ SEGMENTS = 1_112
 """Of 9 processes each: 10,008 in all."""
 
 MANY = 1_000_000
-SLICE = 50_000
+SLICE = 25_000
 """Swaps of one reactor; every fifth reactor is swapped from a thread."""
 
 WALK = 500
 """Swaps after which every segment is looked at."""
+
+SOMETIMES = 20
+"""Swaps between which the machine is looked at."""
 
 ROUNDS = 50
 """Rounds of the loop in which everything that follows from a swap and an event has happened."""
@@ -76,14 +80,15 @@ class Spent:
         return 0.0
 
     def shown(self) -> dict[str, float]:
-        return {name: self.microseconds(p) for name, p in (("p50", 0.5), ("p99", 0.99), ("p999", 0.999), ("max", 1.0))}
+        shares = {"p10": 0.1, "p50": 0.5, "p99": 0.99, "p999": 0.999, "max": 1.0}
+        return {name: self.microseconds(share) for name, share in shares.items()}
 
 
 def swaps(count: int, *, segments: int = SEGMENTS, seed: int = 0) -> dict[str, Any]:
     """So many on the virtual clock; three events to ten swaps; of ten new segments three swap others as they act."""
     cell, draw = SwapCell(segments, VirtualClock()), random.Random(seed)
-    names = ("prepare", "swap", "both", "inside", "prepare inside")
-    prepare, swap, both, inside, prepare_inside = spent = [Spent() for _ in names]
+    names = ("prepare", "swap", "both", "inside", "prepare inside", "same")
+    prepare, swap, both, inside, prepare_inside, same = spent = [Spent() for _ in names]
     cell.told.took, cell.prepared_inside = inside.add, prepare_inside.add
     built = cell.number
     settle()
@@ -104,9 +109,20 @@ def swaps(count: int, *, segments: int = SEGMENTS, seed: int = 0) -> dict[str, A
         swap.add(over - ready)
         both.add(over - asked)
         cell.check(segment)
+        if cell.checks % SOMETIMES == 0:
+            same.add(always_the_same())
         if cell.checks % WALK == 0:
             cell.counts()
     return told(cell, built, dict(zip(names, spent, strict=True)), time.process_time() - began)
+
+
+def always_the_same() -> float:
+    """Seconds of processor time that a fixed piece of work takes, of about as long as a swap."""
+    began = time.thread_time()
+    made = {number: Segment(number) for number in range(600)}
+    for number in range(0, 600, 2):
+        made.pop(number).labels = (number, number)
+    return time.thread_time() - began
 
 
 def swaps_from_a_thread(count: int, *, segments: int = SEGMENTS, seed: int = 0) -> dict[str, Any]:
