@@ -32,8 +32,8 @@ class Chordal(Justified):
                 self._why[one][other] = 0
 
     def undo(self, mark: int) -> None:
-        while len(self._trail) > mark:
-            first, second, relation = self._trail.pop()
+        while len(self.trail) > mark:
+            first, second, relation = self.trail.pop()
             self._edges[first][second], self._edges[second][first] = relation, INVERSE[relation]
             self._why[first][second] = self._why[second][first] = self._past.pop()
         self.consistent = True
@@ -54,7 +54,7 @@ class Chordal(Justified):
 
     def changes(self, mark: int) -> Iterable[tuple[int, int]]:
         """The chords that were narrowed since a mark, each once."""
-        return cast(Iterable[tuple[int, int]], dict.fromkeys((a, b) for a, b, _ in self._trail[mark:]))
+        return cast(Iterable[tuple[int, int]], dict.fromkeys((a, b) for a, b, _ in self.trail[mark:]))
 
     def _follow(self, waiting: dict[tuple[Interval, Interval], None]) -> bool:
         edges, whys = self._edges, self._why

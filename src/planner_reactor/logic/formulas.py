@@ -44,19 +44,19 @@ class Atom(msgspec.Struct, frozen=True):
 class Bindings:
     """What variables stand for; bindings made since a `mark` can be undone."""
 
-    __slots__ = ("_trail", "values")
+    __slots__ = ("trail", "values")
 
     def __init__(self) -> None:
         self.values: dict[int, Term] = {}
-        self._trail: list[int] = []
+        self.trail: list[int] = []
 
     def mark(self) -> int:
-        return len(self._trail)
+        return len(self.trail)
 
     def undo(self, mark: int) -> None:
         """Forget every binding made since `mark`."""
-        while len(self._trail) > mark:
-            del self.values[self._trail.pop()]
+        while len(self.trail) > mark:
+            del self.values[self.trail.pop()]
 
     def walk(self, term: Term) -> Term:
         """What the term stands for now: a constant, or a variable that nothing binds."""
@@ -66,7 +66,7 @@ class Bindings:
 
     def bind(self, variable: int, term: Term) -> None:
         self.values[variable] = term
-        self._trail.append(variable)
+        self.trail.append(variable)
 
     def unify(self, first: tuple[Term, ...], second: tuple[Term, ...]) -> bool:
         """Make two lists of terms equal if that is possible; on failure the caller undoes what was bound."""

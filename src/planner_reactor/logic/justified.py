@@ -52,7 +52,7 @@ class Justified(Network):
         return self.consistent
 
     def undo(self, mark: int) -> None:
-        trail = self._trail
+        trail = self.trail
         while len(trail) > mark:
             first, second, relation = trail.pop()
             why = self._past.pop()
@@ -82,7 +82,7 @@ class Justified(Network):
         for first, second in lost:
             for one, other in ((first, second), (second, first)):
                 del self._edges[one][other], self._why[one][other]
-        self._trail.clear()
+        self.trail.clear()
         self._past.clear()
         self.consistent, self.conflict = True, 0
         again = dict.fromkeys(lost)

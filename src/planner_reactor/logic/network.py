@@ -24,11 +24,11 @@ class Network:
     contradiction was found.
     """
 
-    __slots__ = ("_edges", "_trail", "consistent")
+    __slots__ = ("_edges", "consistent", "trail")
 
     def __init__(self) -> None:
         self._edges: dict[Interval, dict[Interval, int]] = {}
-        self._trail: list[tuple[Interval, Interval, int]] = []
+        self.trail: list[tuple[Interval, Interval, int]] = []
         self.consistent = True
 
     @property
@@ -76,12 +76,12 @@ class Network:
 
     def mark(self) -> int:
         """A state to which `undo` can return."""
-        return len(self._trail)
+        return len(self.trail)
 
     def undo(self, mark: int) -> None:
         """Forget everything since `mark` but the names of intervals."""
-        while len(self._trail) > mark:
-            first, second, relation = self._trail.pop()
+        while len(self.trail) > mark:
+            first, second, relation = self.trail.pop()
             if relation == ALL:
                 del self._edges[first][second], self._edges[second][first]
             else:
@@ -98,7 +98,7 @@ class Network:
 
     def _set(self, first: Interval, second: Interval, relation: int) -> bool:
         row = self._edges[first]
-        self._trail.append((first, second, row.get(second, ALL)))
+        self.trail.append((first, second, row.get(second, ALL)))
         row[second] = relation
         self._edges[second][first] = INVERSE[relation]
         return relation != NONE

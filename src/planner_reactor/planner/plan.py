@@ -142,8 +142,8 @@ class Plan(msgspec.Struct, eq=False):
 
     def mark(self) -> tuple[int, ...]:
         return (
-            self.bindings.mark(),
-            self.network.mark(),
+            len(self.bindings.trail),
+            len(self.network.trail),
             len(self.steps),
             len(self.links),
             len(self.uses),
@@ -153,7 +153,9 @@ class Plan(msgspec.Struct, eq=False):
 
     def undo(self, mark: tuple[int, ...]) -> None:
         bindings, network, steps, links, uses, distinct, assumed = mark
-        self.bindings.undo(bindings)
-        self.network.undo(network)
+        if len(self.bindings.trail) > bindings:
+            self.bindings.undo(bindings)
+        if len(self.network.trail) > network or not self.network.consistent:
+            self.network.undo(network)
         del self.steps[steps:], self.links[links:], self.uses[uses:]
         del self.distinct[distinct:], self.assumed[assumed:]

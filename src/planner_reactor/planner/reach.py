@@ -33,6 +33,7 @@ class Reach:
         given = frozenset(known) | problem.theory.lasting_facts
         self._here = _bounds(problem.theory, given, problem.forbidden, problem.beliefs.relaxed)
         self._best = _bounds(problem.theory, given, problem.forbidden, frozenset())
+        self._together: dict[tuple[str, ...], int] = {}
 
     def least(self, predicate: str) -> int:
         """At least so many actions bring it about (what these need does not count)."""
@@ -56,10 +57,16 @@ class Reach:
                 waiting.append(need)
         return tuple(found)
 
-    def least_together(self, predicates: Iterable[str]) -> int:
+    def least_together(self, predicates: tuple[str, ...]) -> int:
         """At least so many actions bring about all of these: those count that no action can help
         to two of.
         """
+        found = self._together.get(predicates)
+        if found is None:
+            found = self._together[predicates] = self._least_together(predicates)
+        return found
+
+    def _least_together(self, predicates: tuple[str, ...]) -> int:
         contributors = self.problem.theory.contributors
         total = largest = 0
         counted: set[str] = set()

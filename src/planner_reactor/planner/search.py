@@ -111,7 +111,7 @@ class Search:
             while stack:
                 mark, rest, ways = stack[-1]
                 plan.undo(mark)
-                found, agenda = yield from self._next(rest, ways, steps, allowed)
+                found, agenda = yield from self._next(mark, rest, ways, steps, allowed)
                 if found:
                     break
                 stack.pop()
@@ -126,17 +126,18 @@ class Search:
 
         def affords(schema: ActionSchema) -> bool:
             given = effects[schema.name]
-            needed = count + self._reach.least_together(p for p in wanted if p not in given)
+            needed = count + self._reach.least_together(tuple([p for p in wanted if p not in given]))
             if needed > allowed and allowed < DEEPEST:
                 self._cheapest = min(self._cheapest, needed)
             return needed <= allowed
 
         return affords
 
-    def _next(self, rest: Agenda, ways: Iterator[Way], steps: int, allowed: int) -> Work[tuple[bool, Agenda]]:
-        """What is to be done after the next way that is possible and not too dear."""
+    def _next(
+        self, mark: tuple[int, ...], rest: Agenda, ways: Iterator[Way], steps: int, allowed: int
+    ) -> Work[tuple[bool, Agenda]]:
+        """What is to be done after the next way that is possible and not too dear; `mark`: the plan as it is."""
         plan = self.plan
-        mark = plan.mark()
         for way in ways:
             yield
             self.nodes += 1
@@ -218,11 +219,15 @@ class Search:
         """At least so many more steps are needed for all of these goals."""
         return self._reach.least_together(self._not_there(goals))
 
-    def _not_there(self, goals: Iterable[Goal]) -> list[str]:
+    def _not_there(self, goals: Iterable[Goal]) -> tuple[str, ...]:
         """The predicates of the goals, each once, that are no effect of a step in the plan."""
         there = self._brought_about()
-        wanted = dict.fromkeys(goal.atom.predicate for goal in goals)
-        return [predicate for predicate in wanted if predicate not in there]
+        wanted: dict[str, None] = {}
+        for goal in goals:
+            predicate = goal.atom.predicate
+            if predicate not in there:
+                wanted[predicate] = None
+        return tuple(wanted)
 
     def _brought_about(self) -> frozenset[str]:
         """The predicates of the effects of the steps in the plan; only what is new since the last time is looked at."""
@@ -267,7 +272,9 @@ def _chained(goals: list[Goal], rest: Agenda) -> Agenda:
     return rest
 
 
-def _goals(agenda: Agenda) -> Iterator[Goal]:
+def _goals(agenda: Agenda) -> list[Goal]:
+    goals = []
     while agenda is not None:
         goal, agenda = agenda
-        yield goal
+        goals.append(goal)
+    return goals

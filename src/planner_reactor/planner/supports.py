@@ -155,8 +155,8 @@ class Supports(msgspec.Struct, eq=False):
     def _actions(
         self, goal: Goal, atom: Atom, affords: Callable[[ActionSchema], bool], *, abstract: bool
     ) -> Iterator[Way]:
-        for schema, effect in self.problem.theory.domain.producers.get(atom.predicate, ()):
-            if schema.abstract != abstract or schema.cleanup or not _may_match(schema, effect, atom):
+        for schema, effect in self.problem.theory.achievers.get((atom.predicate, abstract), ()):
+            if not _may_match(schema, effect, atom):
                 continue
             if schema.name in self.problem.forbidden:
                 self.consulted.blocked.add(schema.name)

@@ -48,6 +48,14 @@ class Theory:
         self.alternatives = {s.name: self._alternatives(s) for s in domain.schemas.values()}
         """For each abstract action the others that do all that it does: they stand beside it, never below."""
         self.contributors = _contributors(domain)
+        self.achievers = {
+            (predicate, abstract): tuple(
+                [(schema, e) for schema, e in found if schema.abstract == abstract and not schema.cleanup]
+            )
+            for predicate, found in domain.producers.items()
+            for abstract in (False, True)
+        }
+        """What brings a predicate about, by whether it is abstract; what cleans up is for that alone."""
         self.bounds: dict[object, dict[str, int]] = {}
         self._alike_groups: dict[int, tuple[tuple[frozenset[str], int], ...]] = {}
         self._bodies = {id(r): frozenset(c.atom.predicate for c in r.body) for r in domain.rules}
