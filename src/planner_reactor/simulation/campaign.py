@@ -27,7 +27,7 @@ RESULTS = Path("out/chaos.jsonl")
 SECONDS = 1800.0
 """Of simulated time in which faults strike, in each case."""
 
-CELL_EVERY, TWICE_EVERY, CROWD_EVERY = 6, 25, 100
+CELL_EVERY, TWICE_EVERY, CROWD_EVERY = 6, 25, 200
 """Of so many seeds one is the cell's; one is run twice, with jumps of the time of day; one has a crowd."""
 
 
