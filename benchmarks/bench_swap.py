@@ -35,11 +35,14 @@ SEGMENTS = 1_112
 """Of 9 processes each: 10,008 in all."""
 
 MANY = 1_000_000
-SLICE = 25_000
+SLICE = 50_000
 """Swaps of one reactor; every fifth reactor is swapped from a thread."""
 
 WALK = 500
 """Swaps after which every segment is looked at."""
+
+BETWEEN = 0.001
+"""Seconds of virtual time between two swaps: 25,000 at one instant use up the turns that a root has at one instant."""
 
 SOMETIMES = 20
 """Swaps between which the machine is looked at."""
@@ -97,6 +100,7 @@ def swaps(count: int, *, segments: int = SEGMENTS, seed: int = 0) -> dict[str, A
         if draw.random() < 0.3:
             cell.happen(cell.segments[draw.randrange(segments)])
             cell.scheduler.run(cell.scheduler.now)
+        cell.scheduler.run(cell.scheduler.now + BETWEEN)
         segment = cell.segments[draw.randrange(segments)]
         adaptation = cell.adaptation(segment, swapping=draw.random() < 0.3)
         asked = time.thread_time()
