@@ -13,7 +13,7 @@ the next has ended with it; a body ends because all that it waits for is basic, 
 KILL meets a reaction at rest (*safe*), nothing waits after the drains (*atomic*), and what is held has no caller within
 that is not drained before (*local*). What is new is asserted by the new reactions of s alone, which serve nothing until
 UNINHIBIT, the last step: nobody is served by old and new (*consistent*). A test explores every slice of a family of
-these, and of what is nearly one (docs/decisions/0046).
+these, and of what is nearly one (docs/decisions/0047).
 """
 
 from __future__ import annotations
