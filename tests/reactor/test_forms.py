@@ -8,13 +8,15 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from planner_reactor.link.messages import Adaptation
+from planner_reactor.link.messages import Adaptation, Change
 from planner_reactor.reactor import forms
 from planner_reactor.reactor.preparing import Preparing, Vocabulary
-from planner_reactor.reactor.reactor import EQUATION_3
+from planner_reactor.reactor.reactor import EQUATION_3, Reactor
+from planner_reactor.reactor.structure import bound_of
 from planner_reactor.rs.printer import show
 from planner_reactor.rs.terms import Process
 from planner_reactor.rs.vocabulary import BUILT_IN, Signature
+from tests.reactor.driving import Bench
 from tests.strategies import HOST, OPERATORS, any_call, processes, sound_leaf
 
 VOCABULARY = Vocabulary(
@@ -128,3 +130,38 @@ def test_forms_are_bounded() -> None:
             read(by, f"P[1] = Act[{name}] :; NIL")
     assert len(by._forms._forms) <= forms.MOST
     assert len(by._forms._met) <= forms.MOST
+
+
+TWO_LEVELS = """P[{0}] = SIT[top1]<k> :; (~((Long ; REASSERT[part1]) : SUCCEED[top1, k]) : FAIL[top1, k])
+P[{1}] = SIT[part1]<k> :; (~(Do[a{0}, 2] : {2} : SUCCEED[part1, k]) : FAIL[part1, k])"""
+
+
+@pytest.mark.parametrize(("rest", "kept"), [("Do[b7, 3]", True), ("Long", True), ("Delay[41]", False)])
+def test_the_bound_of_what_was_read_by_its_form_is_the_bound_of_its_text(rest: str, kept: bool) -> None:
+    bench = Bench()
+    reactor, limits = bench.reactor, {name: process.limit for name, process in bench.host.processes.items()}
+    found = []
+    for number in range(1, 9):
+        below, top = 20 + 2 * number, 21 + 2 * number
+        adaptation = Adaptation(
+            id=number,
+            definitions=TWO_LEVELS.format(top, below, rest if number % 2 else "Do[b8, 1]"),
+            changes=tuple(Change(situation=s, base=number - 1, fresh=number == 1) for s in ("top1", "part1")),
+            kills=() if number == 1 else (top - 2, below - 2),
+            adds=(below, top),
+        )
+        by_form = reactor.bound(adaptation)
+        assert by_form == bound_of(adaptation, reactor.reactions, reactor.vocabulary.signatures, limits)
+        found.append(by_form)
+        reactor.receive(adaptation)
+        bench.scheduler.run(bench.scheduler.now)
+    assert reactor.counts["applied"] == 8
+    assert found[0] == 1.0 < 500 < min(found[1:])
+    assert any(label in reactor._durations for label in (36, 37))
+    assert (91 in durations_of(reactor, rest)) is kept  # not if a number says how long
+
+
+def durations_of(reactor: Reactor, rest: str) -> set[int]:
+    """The labels of reactions with this rest of which it is known how long they take."""
+    text = TWO_LEVELS.format(91, 90, rest)
+    return set(reactor.prepare(Adaptation(id=99, definitions=text, adds=(90, 91))).durations)
