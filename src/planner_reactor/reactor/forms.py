@@ -97,7 +97,7 @@ class Form(msgspec.Struct, frozen=True):
 
 def key_of(text: str) -> tuple[Key, list[str], list[str]] | None:
     """The form of a text, its different digits in the order of their coming, and all of them; None if it has none."""
-    if len(text) > LONGEST or '"' in text:
+    if len(text) > LONGEST:
         return None
     parts = _DIGITS.split(text)
     runs = parts[1::2]
