@@ -67,7 +67,7 @@ class Doubts:
             return
         self._waiting.append(told)
         if len(self._waiting) == 1:
-            self._reactor.perceive("error", "journal", cause="disk")
+            self._reactor.perceive("error", "journal", cause="the disk takes nothing")
             self._reactor.scheduler.call_after(AGAIN, self._try)
 
     def _try(self) -> None:
