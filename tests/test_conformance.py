@@ -105,6 +105,13 @@ FOUND = {
             "DRAIN[t] ; Delay[1] ; FAIL[s, 1] ; Delay[1]",
         ),
     ),
+    "a body that a FREEZE cuts off binds nothing": Example(
+        "",
+        (
+            "ASSERT[s] | SIT[s]<k> : Give<x> : (NIL & (Give<y> ; IN[p]<z>)) | OUT[p, 1]",
+            "Delay[0.5] ; FREEZE[s] ; Delay[1] ; DRAIN[s]",
+        ),
+    ),
     "a POST that is refused leaves its ADD to the next": Example(
         "",
         (

@@ -169,8 +169,10 @@ class _Body:
             before = last
         else:
             slot = region.new_slot()
-            closing = self.closing(slot, exits)
-            rest = self.chain(parts[opener + 1 :], region, closing, where, on_abort=on_abort)
+            inside = parts[opener + 1 :]
+            bound = (region.slot(name) for part in inside for name in exported(part))
+            closing = self.closing(slot, exits, tuple(bound))
+            rest = self.chain(inside, region, closing, where, on_abort=on_abort)
             onward = Exits(rest, rest if on_abort else exits.ab)
             entry = self.opening(self.process(parts[opener], region, onward, where), slot, closing)
             before = opener
@@ -185,10 +187,11 @@ class _Body:
         control = self.compiler.controls.get(term.name) if isinstance(term, Call) else None
         return control is not None and control.opens_body
 
-    def closing(self, slot: int, exits: Exits) -> Exits:
+    def closing(self, slot: int, exits: Exits, bound: tuple[int, ...] = ()) -> Exits:
+        """Where a body ends; `bound` are the slots of the names that leave it."""
         return Exits(
             instructions.CloseBody(self.kernel, slot, exits.ok, ok=True),
-            instructions.CloseBody(self.kernel, slot, exits.ab, ok=False),
+            instructions.CloseBody(self.kernel, slot, exits.ab, ok=False, bound=bound),
         )
 
     def opening(self, leaf: Instruction, slot: int, closing: Exits | None) -> Instruction:

@@ -204,17 +204,20 @@ class Again:
 
 
 class CloseBody:
-    """The end of what follows a control that opens bodies."""
+    """The end of what follows a control that opens bodies. A body that is cut off binds nothing: `bound` is forgotten."""
 
-    __slots__ = ("kernel", "ok", "onward", "slot")
+    __slots__ = ("bound", "kernel", "ok", "onward", "slot")
     silent = True
     where = NOWHERE
 
-    def __init__(self, kernel: Kernel, slot: int, onward: Instruction, *, ok: bool) -> None:
+    def __init__(
+        self, kernel: Kernel, slot: int, onward: Instruction, *, ok: bool, bound: tuple[int, ...] = ()
+    ) -> None:
         self.kernel = kernel
         self.slot = slot
         self.onward = onward
         self.ok = ok
+        self.bound = bound
 
     def run(self, strand: Strand) -> Instruction | None:
         body = strand.frame[self.slot]

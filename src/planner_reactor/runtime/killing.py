@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Protocol
 
-from planner_reactor.runtime.strands import FORKED, OVER, WAITING, WOKEN, Body, Instruction, Strand
+from planner_reactor.runtime.strands import FORKED, OVER, UNBOUND, WAITING, WOKEN, Body, Instruction, Strand
 
 
 class Books(Protocol):
@@ -58,7 +58,10 @@ def cut_body(books: Books, body: Body, cause: str) -> None:
 
 
 def abort_body(books: Books, body: Body, cause: str) -> None:
-    """Abort a body in service: its content is killed; its strand goes on where the body's abort leads."""
+    """Abort a body in service: its content is killed, and what it has bound is unbound, as with what loses a `#` (N5).
+
+    Its strand goes on where the body's abort leads.
+    """
     strand = body.strand
     if strand.state == FORKED:
         kill(books, strand.link.strands())
@@ -71,6 +74,8 @@ def abort_body(books: Books, body: Body, cause: str) -> None:
     strand.stack = body.stack
     strand.link = None
     strand.cause = cause
+    for slot in body.close.bound:  # type: ignore[attr-defined]  # what closes a body knows
+        strand.frame[slot] = UNBOUND
     books.queue(strand, body.close)
 
 
