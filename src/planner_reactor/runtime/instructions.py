@@ -204,7 +204,7 @@ class Again:
 
 
 class CloseBody:
-    """The end of what follows a control that opens bodies. A body that is cut off binds nothing: `bound` is forgotten."""
+    """The end of what follows a control that opens bodies. What cuts a body off forgets `bound`, the slots it binds."""
 
     __slots__ = ("bound", "kernel", "ok", "onward", "slot")
     silent = True
