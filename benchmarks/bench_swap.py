@@ -12,6 +12,7 @@ After every swap it is asked whether a bystander began again, an event or a perc
 behind (`SwapCell.check`), of every segment every `WALK` swaps; it has to be nothing.
 
     python benchmarks/bench_swap.py [SWAPS] [--out FILE]      a million; goes on where it stopped (make swaps)
+    python benchmarks/bench_swap.py [SWAPS] --moments         the swaps by how busy the machine was around each of them
 """
 
 from __future__ import annotations
@@ -23,6 +24,7 @@ import random
 import threading
 import time
 from collections import Counter
+from math import inf
 from pathlib import Path
 from typing import Any
 
@@ -46,6 +48,9 @@ BETWEEN = 0.001
 
 SOMETIMES = 20
 """Swaps between which the machine is looked at."""
+
+QUIET = (1.1, 1.2, 1.4, inf)
+"""How many times its least the fixed work may take where the machine is called quiet."""
 
 ROUNDS = 50
 """Rounds of the loop in which everything that follows from a swap and an event has happened."""
@@ -120,11 +125,11 @@ def swaps(count: int, *, segments: int = SEGMENTS, seed: int = 0) -> dict[str, A
     return told(cell, built, dict(zip(names, spent, strict=True)), time.process_time() - began)
 
 
-def always_the_same() -> float:
-    """Seconds of processor time that a fixed piece of work takes, of about as long as a swap."""
+def always_the_same(size: int = 600) -> float:
+    """Seconds of processor time that a fixed piece of work takes; of 600, about as long as a swap."""
     began = time.thread_time()
-    made = {number: Segment(number) for number in range(600)}
-    for number in range(0, 600, 2):
+    made = {number: Segment(number) for number in range(size)}
+    for number in range(0, size, 2):
         made.pop(number).labels = (number, number)
     return time.thread_time() - began
 
@@ -176,6 +181,38 @@ def swaps_from_a_thread(count: int, *, segments: int = SEGMENTS, seed: int = 0) 
     cell.scheduler.run()
     thread.join()
     return told(cell, built, spent, time.process_time() - began)
+
+
+def moments(count: int, *, segments: int = SEGMENTS, seed: int = 0) -> dict[str, Any]:
+    """So many; apart, those before and behind which fixed work took at most so many times its least."""
+    cell, draw = SwapCell(segments, VirtualClock()), random.Random(seed)
+    found: list[tuple[float, float, float]] = []  # the work around it, prepare, swap
+    settle()
+    for _ in range(count):
+        cell.scheduler.run(cell.scheduler.now + BETWEEN)
+        adaptation = cell.adaptation(cell.segments[draw.randrange(segments)])
+        asked = time.thread_time()
+        prepared = cell.reactor.prepare(adaptation)
+        ready, before = time.thread_time(), always_the_same(100)
+        began = time.thread_time()
+        cell.reactor.receive(prepared)
+        cell.scheduler.run(cell.scheduler.now)
+        over = time.thread_time()
+        found.append((max(before, always_the_same(100)), ready - asked, over - began))
+        cell.take()
+    lost = {name: wrong for name, wrong in cell.counts().items() if wrong}
+    least = sorted(around for around, _, _ in found)[count // 200]
+    spent = {}
+    for times in QUIET:
+        prepare, swap = Spent(), Spent()
+        for around, took, swapped in found:
+            if around <= times * least:
+                prepare.add(took)
+                swap.add(swapped)
+        spent["all" if times == QUIET[-1] else f"at most {times:g} times"] = {
+            "swaps": swap.bins.total(), "prepare": prepare.shown(), "swap": swap.shown()
+        }  # fmt: skip
+    return {"wrong": lost, "us": spent}
 
 
 def settle() -> None:
@@ -231,7 +268,11 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("swaps", nargs="?", type=int, default=MANY)
     parser.add_argument("--out", type=Path, default=Path("out/swaps.jsonl"))
+    parser.add_argument("--moments", action="store_true")
     given = parser.parse_args()
+    if given.moments:
+        print(json.dumps(found := moments(min(given.swaps, 10_000)), indent=1))
+        return 1 if found["wrong"] else 0
     print(json.dumps(found := campaign(given.swaps, given.out), indent=1))
     return 1 if any(found[name] for name in COUNTED) else 0
 
