@@ -112,7 +112,7 @@ def test_a_full_disk_stops_adaptations_and_nothing_else() -> None:
     assert len(bench.times("entered", situation="part")) > 3
     assert bench.reactor.journal.gaps == 2  # that it began, and that it came to nothing
     told = [(p.kind, p.subject, p.cause) for p in bench.perceptions() if p.kind != "adaptation_applied"]
-    assert told == [("error", "journal", "the disk takes nothing")]  # a crash would forget that it was refused: an alarm, at once
+    assert told == [("error", "journal", "the disk takes nothing")]  # at once: a crash would forget that it was refused
     disk.room = 10**9
     bench.run(11.0)
     assert [(p.kind, p.cause) for p in bench.perceptions()] == [("adaptation_refused", "disk")]
