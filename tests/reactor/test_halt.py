@@ -60,6 +60,24 @@ def test_a_crash_does_not_release_the_stop_button() -> None:
     assert again.times("entered", situation="part")
 
 
+def test_what_had_failed_fails_though_the_reactor_begins_halted() -> None:
+    disk = TornDisk()
+    bench = Bench(journal=Journal(disk))
+    bench.at(0.0, FIRST)
+    bench.scheduler.call_at(2.5, lambda: bench.flags.update(A=False))
+    bench.scheduler.call_at(4.0, bench.reactor.halt)
+    bench.run(5.0)
+    again = Bench(journal=Journal(TornDisk(disk.durable)))
+    assert list(again.reactor.failed) == ["A"]
+    again.host.report("A", True, "somebody saw it")  # nobody may ever say it again
+    assert again.reactor.failed == {}
+    assert [p.subject for p in again.perceptions() if p.kind == "assumption_holds"] == ["A"]
+    again.reactor.reset()
+    again.run(6.0)
+    assert again.times("entered", situation="part")
+    assert again.reactor.laws.violations == []
+
+
 def test_halting_twice_or_resetting_what_runs_changes_nothing() -> None:
     bench = Bench()
     bench.at(0.0, FIRST)

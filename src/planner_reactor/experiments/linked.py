@@ -39,7 +39,7 @@ class LinkedLoop(Loop):
         self.crashes: Counter[str] = Counter()
         self.broken: list[str] = []  # laws that reactors which are gone have seen broken
         self._heard: deque[Perception] = deque()
-        self._wire = Wire(self.scheduler, self._arrived, self._met)
+        self._wire = Wire(self.scheduler, self._arrived, self._met, self._room)
         self._wire.weather = weather
         self._side: ReactorSide | None = None
         self._session = Session(1, timing=TIMING)
@@ -143,8 +143,10 @@ class LinkedLoop(Loop):
                     self._told(message)
                 case _:
                     pass
-        if to == "planner" and self._side is not None:
-            self._side.pump()  # what was taken makes room
+
+    def _room(self, to: Name) -> None:
+        if to == "reactor" and self._side is not None:
+            self._side.pump()
 
     def _answer(self, enquiry: Enquiry) -> None:
         assert self._side is not None

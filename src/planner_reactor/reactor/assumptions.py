@@ -54,8 +54,9 @@ class Assumptions:
         self._older: list[Older] = []  # of which something may be left
 
     def restored(self) -> None:
-        """What the journal knows of: it fails until it is sensed to hold."""
+        """What the journal knows of: it fails until it is sensed to hold, and what rests on it is disabled."""
         self.failed = dict.fromkeys(self._journal.state.committed.failed, self._scheduler.now)
+        self.disable()
 
     def resting_on(self, assumption: str) -> tuple[str, ...]:
         """The situations that rest on it; every situation rests on its own calm, which nobody has to say."""

@@ -44,6 +44,7 @@ class Life:
         fresh = reactor.journal.state == State()
         reactor.journal.write(Started(reactor.scheduler.now))
         if self.halted:
+            reactor.assumptions.restored()  # what is noticed meanwhile bears on what is known
             return reactor.executer.start_process(AT_REST, name="halted")
         return self._begun(None if fresh else recovery)
 

@@ -66,7 +66,7 @@ class Stage:
         self.brain = Improviser(self.book, self.scheduler.random("planner"))
         self.intensity = INTENSITY if any(fault.kind == "failing" for fault in case.faults) else None
         self.watch = Watch(self.scheduler, self.book, self.intensity)
-        self.wire = Wire(self.scheduler, self._arrived, self._met)
+        self.wire = Wire(self.scheduler, self._arrived, self._met, self._room)
         self.side: ReactorSide | None = None
         self.planner: PlannerSide | None = None
         self.planners = 0
@@ -254,11 +254,14 @@ class Stage:
         if to == "planner" and self.planner is not None:
             self.planner.met()
 
+    def _room(self, to: Name) -> None:
+        if to == "reactor" and self.side is not None:
+            self.side.pump()
+
     def _arrived(self, to: Name, messages: list[bytes]) -> None:
         if to == "reactor":
             if self.side is not None:
                 self.side.receive(messages)
-                self.side.pump()
             return
         planner = self.planner
         assert planner is not None
@@ -270,12 +273,6 @@ class Stage:
                 self.stands(told)
             elif isinstance(told, Perception) and self.watch.new(planner.session, told):
                 self._heard(told)
-        if self.side is not None:
-            self.scheduler.soon(self._pump)
-
-    def _pump(self) -> None:
-        if self.side is not None:
-            self.side.pump()
 
     def stands(self, standing: Standing) -> None:
         """A planner that enquired is told how the reactor stands; the improviser never asks."""

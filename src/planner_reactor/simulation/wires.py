@@ -36,11 +36,16 @@ CLEAN = Weather()
 class Wire:
     """Carries frames between the two ends.
 
-    `arrived(end, messages)` is told what an end has received, `met(end)` that the other end is another incarnation.
+    `arrived(end, messages)` is told what an end has received, `met(end)` that the other end is another incarnation,
+    `room(end)` that something this end had to say was acknowledged: it may give more to its session.
     """
 
     def __init__(
-        self, scheduler: Scheduler, arrived: Callable[[Name, list[bytes]], object], met: Callable[[Name], object]
+        self,
+        scheduler: Scheduler,
+        arrived: Callable[[Name, list[bytes]], object],
+        met: Callable[[Name], object],
+        room: Callable[[Name], object],
     ) -> None:
         self.scheduler = scheduler
         self.weather = CLEAN
@@ -49,6 +54,7 @@ class Wire:
         self.counts: Counter[str] = Counter()
         self._arrived = arrived
         self._met = met
+        self._room = room
         self._draw = scheduler.random("wire")
         self._due: dict[Name, Timer | None] = {"reactor": None, "planner": None}
         self._sent = 0
@@ -94,9 +100,12 @@ class Wire:
         self.counts["reordered"] += number < self._latest[to]
         self._latest[to] = max(number, self._latest[to])
         before, peer, stale = end.counts["repeated"], end.peer, end.counts["stale"]
+        waiting = end.unacknowledged
         messages = end.receive(frame, self.scheduler.now)
         if end.peer != peer:
             self._met(to)
+        if end.unacknowledged < waiting:
+            self._room(to)
         self.counts["repeated"] += end.counts["repeated"] - before
         self.counts["over"] += over and end.counts["stale"] > stale
         if messages:
