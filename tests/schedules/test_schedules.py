@@ -32,6 +32,12 @@ def test_every_schedule_ends_in_the_ideal_reactor_of_the_assumptions_that_surviv
     assert len(total.reached) > 8
 
 
+@pytest.mark.parametrize("number", [14708])
+def test_a_life_that_went_wrong_once_goes_right(number: int) -> None:
+    """14708: a HOLDMONITOR that an adaptation takes away comes again with the next; the first is refused."""
+    assert not live(number)[1]
+
+
 @pytest.mark.parametrize(("name", "seed"), [("cafe", 1), ("cafe", 2), ("greenhouse", 3)])
 def test_so_it_does_with_the_real_reactor_under_it(name: str, seed: int) -> None:
     life = WholeLife(name, True, seed)

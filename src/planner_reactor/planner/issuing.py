@@ -279,8 +279,11 @@ class Issuer:
                 parts.kills.append(self.monitors.pop(monitor))
         parts.kills.extend(self.strays)
         self.strays.clear()
+        going = {m for f in self.under_way.values() for m, n in f.monitors.items() if n in f.adaptation.kills}
         for (kind, name), period in wanted.items():
-            if (kind, name) not in self.monitors:
+            if kind == "HOLDMONITOR" and (kind, name) in going:
+                self._watched = None  # nor come again before it has gone: that may be refused, and it would stand twice
+            elif (kind, name) not in self.monitors:
                 self.monitors[kind, name] = self._add(parts, show(reactions.monitor(kind, name, period)))
 
     def wanted_monitors(self, beliefs: Beliefs, holding: Mapping[str, int]) -> dict[Monitor, int]:
