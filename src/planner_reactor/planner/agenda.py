@@ -1,9 +1,9 @@
 """What to plan next (R §7.3): failed situations > failed assumptions > active stubs > quiescent stubs.
 
 Among equals what comes first in the text of the reactor; what has taken long already comes after the others (its
-`turn`). Situations that an adaptation under way touches
-are put aside until it is answered. Entries that have become out of date (planned meanwhile, or raised) are
-dropped when they come up, so that nothing here depends on how many situations there are.
+`turn`). Situations that an adaptation under way touches are put aside until it is answered. Entries that have become
+out of date (planned meanwhile, or raised) are dropped when they come up, so that nothing here depends on how many
+situations there are.
 """
 
 from __future__ import annotations

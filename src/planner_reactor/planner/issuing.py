@@ -264,7 +264,11 @@ class Issuer:
         parts.changes.append(Change(situation=segment.name, base=segment.version, assumptions=assumptions, fresh=fresh))
 
     def _watch(self, parts: _Parts, beliefs: Beliefs, holding: Mapping[str, int]) -> None:
-        """Bring the monitors into line with the assumptions in use."""
+        """Bring the monitors into line with the assumptions in use.
+
+        A HOLDMONITOR comes again when it is known to have gone: its going may be refused, and it would stand twice. An
+        ASSUMONITOR does not wait for that, since something rests on what it watches.
+        """
         parts.given_up = tuple(sorted(beliefs.relaxed))
         watched = (frozenset(self.model.uses), tuple(holding.items()))
         if watched == self._watched and not self.strays:
@@ -282,7 +286,7 @@ class Issuer:
         going = {m for f in self.under_way.values() for m, n in f.monitors.items() if n in f.adaptation.kills}
         for (kind, name), period in wanted.items():
             if kind == "HOLDMONITOR" and (kind, name) in going:
-                self._watched = None  # nor come again before it has gone: that may be refused, and it would stand twice
+                self._watched = None
             elif (kind, name) not in self.monitors:
                 self.monitors[kind, name] = self._add(parts, show(reactions.monitor(kind, name, period)))
 
