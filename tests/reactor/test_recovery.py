@@ -101,6 +101,33 @@ def test_an_assumption_that_had_failed_fails_until_it_is_sensed_to_hold() -> Non
     assert again.reactor.laws.violations == []
 
 
+def test_a_failure_that_only_a_process_noticed_is_told_by_the_next_incarnation_too() -> None:
+    """What was told of it may have gone with the process; it is told until nothing rests on it."""
+    disk = TornDisk()
+    bench = Bench(journal=Journal(disk))
+    bench.at(0.0, FIRST)
+    bench.scheduler.call_at(3.0, lambda: bench.host.report("A", False, "it slipped"))
+    bench.run(3.5)
+    again = survivor(disk)
+    again.at(6.5, SECOND)
+    again.run(20.0)
+    assert again.times("assumption_failure", assumption="A") == [2.0, 4.0, 6.0]
+
+
+def test_a_return_that_may_have_been_told_to_nobody_is_told_once_more() -> None:
+    disk = TornDisk()
+    bench = Bench(journal=Journal(disk))
+    hold = replace(FIRST, definitions=FIRST.definitions + "P[9] = HOLDMONITOR[A, 1000]", adds=(*FIRST.adds, 9))
+    bench.at(0.0, hold)
+    bench.scheduler.call_at(4.2, lambda: bench.flags.update(A=False))
+    bench.scheduler.call_at(8.2, lambda: bench.flags.update(A=True))
+    bench.run(9.5)
+    assert bench.times("assumption_holds") == [9.0]
+    again = survivor(disk)
+    again.run(10.0)
+    assert again.times("assumption_holds", assumption="A") == [1.0]
+
+
 def test_a_full_disk_stops_adaptations_and_nothing_else() -> None:
     disk = TornDisk()
     bench = Bench(journal=Journal(disk))

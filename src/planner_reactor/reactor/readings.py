@@ -6,6 +6,9 @@ so many of so many readings make a failure. And it may *flap*: what rests on the
 time, but the planner hears of at most one change in a hold-off, and of a return only after a hold-on. So an assumption
 that flaps costs at most one change of assumptions in a hold-off, whatever its frequency. How much of this is wanted an
 assumption's `Caution` says; the default is none of it.
+
+What was told last may have gone with the reactor's process. So one that begins anew tells both again: that what its
+journal says to fail fails, as long as something rests on it, and, once, that what is watched for its return holds.
 """
 
 from __future__ import annotations
@@ -16,7 +19,7 @@ from dataclasses import dataclass, field
 from math import inf
 
 from planner_reactor.link.messages import PerceptionKind
-from planner_reactor.reactor.assumptions import Assumptions
+from planner_reactor.reactor.assumptions import CALM, Assumptions
 from planner_reactor.runtime import Host, Scheduler, Timer
 from planner_reactor.runtime.sensing import PLAIN, Caution, Reading, Sensed
 
@@ -68,6 +71,8 @@ class Readings:
         self._assumptions = assumptions
         self._told = told
         self._minds: dict[str, Mind] = {}
+        self._repeats: dict[str, Timer] = {}
+        self._surely_told: set[str] | None = None  # assumptions whose return was told, if it was; None: all of them
         self.doubts = 0  # readings that were stale or stuck
         self.failing: dict[str, int] = {}  # of those that count as holding: readings in a row that say it fails
 
@@ -92,6 +97,9 @@ class Readings:
             if returns and assumption in self._assumptions.failed:
                 mind.held_since = self._scheduler.now if mind.held_since is None else mind.held_since
                 self._holds(assumption, mind)
+            elif returns and self._surely_told is not None and assumption not in self._surely_told:
+                self._surely_told.add(assumption)
+                self._told("assumption_holds", assumption, "")
             return
         mind.held_since = None
         if not fails:
@@ -108,16 +116,29 @@ class Readings:
         """A process noticed by itself: a failure is sent again while something rests on it (nobody asks)."""
         known = assumption in self._assumptions.failed
         self.read(assumption, holds, returns=True)
-        if not known and (since := self._assumptions.failed.get(assumption)) is not None:
-            self._repeat_later(assumption, since)
+        if not known and assumption in self._assumptions.failed:
+            self._repeat_later(assumption)
 
-    def _repeat_later(self, assumption: str, since: float) -> None:
+    def restored(self) -> None:
+        """The reactor stands on its journal: who is to hear of assumptions may not have heard what was told last."""
+        self._surely_told = set(self._assumptions.failed)
+        for assumption in self._assumptions.failed:
+            if not assumption.startswith(CALM):  # the planner cannot give that up
+                self._repeat_later(assumption)
+
+    def _repeat_later(self, assumption: str) -> None:
+        """It is told again and again while it fails and something rests on it, also if that comes to be later."""
+
         def repeat() -> None:
-            if self._assumptions.failed.get(assumption) == since and self._assumptions.resting_on(assumption):
+            if assumption not in self._assumptions.failed:
+                return
+            if self._assumptions.resting_on(assumption):
                 self._fails(assumption, self.mind(assumption))
-                self._repeat_later(assumption, since)
+            self._repeat_later(assumption)
 
-        self._scheduler.call_after(REPEAT, repeat)
+        if (before := self._repeats.get(assumption)) is not None:
+            before.cancel()
+        self._repeats[assumption] = self._scheduler.call_after(REPEAT, repeat)
 
     # -- changes of mind
 

@@ -32,6 +32,7 @@ def restore(reactor: Reactor, recovery: Recovery, equation: Program) -> Root:
     reactor.executer.load([r.schema for r in reactions])
     reactor.loaded(reactions, {r.label: committed.versions.get(r.situation or "", 0) for r in reactions})
     reactor.assumptions.restored()
+    reactor.readings.restored()
     for adaptation in journal.state.open:
         journal.note(Decided(adaptation.id, "refused", reactor.scheduler.now, adaptation.epoch))
         reactor.perceive("adaptation_refused", str(adaptation.id), cause=RESTARTED, epoch=adaptation.epoch)

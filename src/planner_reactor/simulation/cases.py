@@ -17,8 +17,8 @@ from planner_reactor.workcell.disturbances import DISTURBANCES
 World = Literal["workshop", "cell"]
 Kind = Literal[
     "crash", "power", "storm", "cut", "silent_reactor", "silent_planner", "planner", "leader", "stale", "full", "sync",
-    "halt", "fails", "flap", "unknown", "stuck", "noise", "late", "raise", "hang", "failing", "drive", "jump", "crowd",
-    "replay", "version", "watchdog", "world", "nothing",
+    "halt", "fails", "noticed", "flap", "unknown", "stuck", "noise", "late", "raise", "hang", "failing", "drive", "jump",
+    "crowd", "replay", "version", "watchdog", "world", "nothing",
 ]  # fmt: skip
 Point = Literal[
     "received", "appending", "appended", "synced", "draining", "inhibited", "removed", "retired", "renewed", "added",
@@ -32,8 +32,8 @@ INSIDE: tuple[Kind, ...] = ("crash", "crash", "crash", "power", "power", "cut", 
 
 WEIGHTS: Mapping[Kind, int] = {
     "crash": 2, "power": 2, "storm": 1, "cut": 3, "silent_reactor": 2, "silent_planner": 2, "planner": 2, "leader": 2,
-    "stale": 2, "full": 1, "sync": 1, "halt": 1, "fails": 4, "flap": 2, "unknown": 2, "stuck": 2, "noise": 2, "late": 2,
-    "raise": 3, "hang": 2, "drive": 3, "jump": 2, "replay": 2, "version": 1, "watchdog": 1,
+    "stale": 2, "full": 1, "sync": 1, "halt": 1, "fails": 4, "noticed": 2, "flap": 2, "unknown": 2, "stuck": 2,
+    "noise": 2, "late": 2, "raise": 3, "hang": 2, "drive": 3, "jump": 2, "replay": 2, "version": 1, "watchdog": 1,
 }  # fmt: skip
 
 CELL: Mapping[Kind, int] = {

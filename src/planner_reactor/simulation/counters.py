@@ -53,6 +53,7 @@ ROWS: Mapping[str, tuple[int, str]] = {
     "31 other versions of the link refused": (31, "version mismatch, both named"),
     "32 restarts in a storm": (32, "restart storm"),
     "32 situations that failed too often": (32, "a storm of failures, then the safe stop"),
+    "what only a process noticed, and fails still": (0, "failures that no sensor reads, told until the planner knows"),
     "halts": (0, "stop button (law 15)"),
     "watchdog: the machine was stopped": (0, "watchdog not kicked in time"),
 }

@@ -78,6 +78,7 @@ class Counting:
         rows["13 commands abandoned by the reactor"] += self._stage.watch.totals["commands abandoned by itself"]
         rows["12 deeds of a version whose successor is there"] += self._stage.watch.late_versions
         rows["14 deeds that raised"] += counts["raised"]
+        rows["what only a process noticed, and fails still"] += self._stage.watch.totals["failures to be known"]
         rows["25 readings that slipped"] += counts["slips"]
 
     def _note(self, row: str) -> None:

@@ -14,7 +14,7 @@ from msgspec.structs import replace
 
 from planner_reactor.link.messages import Adaptation, Change, Mode
 from planner_reactor.simulation.books import Book, Node
-from planner_reactor.simulation.sensors import ASSUMPTIONS, PERIOD
+from planner_reactor.simulation.sensors import ASSUMPTIONS, NOTICED, PERIOD
 from planner_reactor.simulation.workshop import BEAT
 
 NAMES = tuple(f"s{n}" for n in range(8))
@@ -41,9 +41,10 @@ class Draft:
 class Improviser:
     """Draws adaptations for a book."""
 
-    def __init__(self, book: Book, draw: Random) -> None:
+    def __init__(self, book: Book, draw: Random, rests: Random) -> None:
         self.book = book
         self.draw = draw
+        self._rests = rests  # what rests on an assumption that nobody reads
 
     def first(self) -> Adaptation:
         """A reaction that beats, monitors, and something to do."""
@@ -147,7 +148,7 @@ class Improviser:
             steps = ["Linger[{s}, k, {n}]"]
         elif chance < 0.145:
             steps.append("(Spin :; STOP)")
-        rests = tuple(a for a in ASSUMPTIONS if draw.random() < 0.25)
+        rests = tuple(a for a in ASSUMPTIONS if draw.random() < 0.25) + (NOTICED,) * (self._rests.random() < 0.2)
         return self._label(draft, self._body(name, steps, draw.random() < 0.3)), children, rests
 
     def _body(self, name: str, steps: list[str], spawns: bool) -> str:

@@ -171,3 +171,6 @@ class CellShop:
 
     def calm(self) -> None:
         """What has struck the world stays as it is: it is for the planner to deal with."""
+
+    def relent(self) -> None:
+        """Nor does anything come back by itself."""

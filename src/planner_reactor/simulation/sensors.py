@@ -2,6 +2,7 @@
 
 A0 is a bare yes or no. A1 says when it was taken and from which signal, so that what is late or stuck can be told from
 news. A2 slips now and then: two of three readings make a failure, and the planner hears of one change in a hold-off.
+A3 no sensor reads: only a process may notice.
 
 What was truly read is kept apart for whoever watches (`Read`): he knows by himself what the reactor may believe, and
 what it has to.
@@ -18,6 +19,9 @@ from planner_reactor.runtime import Caution, Reading
 from planner_reactor.runtime.sensing import PLAIN, Sensed
 
 ASSUMPTIONS = ("A0", "A1", "A2")
+NOTICED = "A3"
+"""No monitor asks for it."""
+
 PERIOD = 3.0
 """Seconds between two readings of a monitor."""
 
@@ -51,7 +55,7 @@ class Sensors:
     draw: Random
     now: Callable[[], float]
     counts: Counter[str]
-    truth: dict[str, bool | None] = field(default_factory=lambda: dict.fromkeys(ASSUMPTIONS, True))
+    truth: dict[str, bool | None] = field(default_factory=lambda: dict.fromkeys((*ASSUMPTIONS, NOTICED), True))
     stuck: dict[str, tuple[bool, int]] = field(default_factory=dict)
     noisy: set[str] = field(default_factory=set)
     late: dict[str, float] = field(default_factory=dict)
@@ -64,7 +68,7 @@ class Sensors:
 
     def forget(self) -> None:
         """Whoever reads now has read nothing yet."""
-        self.read = {name: Read(deque(maxlen=caution_of(name).window)) for name in ASSUMPTIONS}
+        self.read = {name: Read(deque(maxlen=caution_of(name).window)) for name in (*ASSUMPTIONS, NOTICED)}
         self._same_since.clear()
 
     def sense(self, name: str) -> Sensed:
@@ -88,11 +92,11 @@ class Sensors:
         self.read[name].note(holds, self.now())
 
     def mend(self) -> None:
-        """All of them are sound, and all that they sense holds."""
+        """All of them are sound, and all that they sense holds; what nobody senses is as it is."""
         self.stuck.clear()
         self.noisy.clear()
         self.late.clear()
-        self.truth = dict.fromkeys(ASSUMPTIONS, True)
+        self.truth.update(dict.fromkeys(ASSUMPTIONS, True))
 
     def _of_no_worth(self, name: str, taken: float, now: float) -> bool:
         """Is it too old, or the same for too long, to say anything?"""

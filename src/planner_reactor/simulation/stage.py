@@ -36,6 +36,9 @@ CALM = 260.0
 UNDERWAY = 1.0
 """Seconds that a message may be on its way over a link that is sound: a resend or two."""
 
+KNOWN = 60.0
+"""Seconds after which the planner must know what fails, once faults have ceased."""
+
 POINT_OF: dict[str, Point] = {
     "adaptation_received": "received", "adaptation_applied": "applied", "adaptation_refused": "refused",
     "adaptation_timed_out": "timed_out", "draining": "draining", "inhibited": "inhibited", "removed": "removed",
@@ -63,7 +66,7 @@ class Stage:
         self.disk = SimulatedDisk()
         self.clock = TimeOfDay(self.scheduler)
         self.book = Book()
-        self.brain = Improviser(self.book, self.scheduler.random("planner"))
+        self.brain = Improviser(self.book, self.scheduler.random("planner"), self.scheduler.random("rests"))
         self.intensity = INTENSITY if any(fault.kind == "failing" for fault in case.faults) else None
         self.watch = Watch(self.scheduler, self.book, self.intensity)
         self.wire = Wire(self.scheduler, self._arrived, self._met, self._room)
@@ -143,6 +146,9 @@ class Stage:
         if self.planner is None:
             self.begin_planner()
         self.release()
+        self.scheduler.call_after(KNOWN, lambda: self.watch.informed(self.side))
+        for after in (KNOWN + 1.0, 2.0 * KNOWN):  # a reactor that does not stand yet does not hear
+            self.scheduler.call_after(after, self.shop.relent)
 
     # -- the reactor's side
 
@@ -217,6 +223,7 @@ class Stage:
         if self.planner is not None:
             return
         self.planners += 1
+        self.watch.believed.clear()
         self.planner = PlannerSide(self.planners, self.wire)
         self.wire.plug("planner", self.planner.session)
         self.planner_begins(self.planner)
@@ -282,6 +289,8 @@ class Stage:
         self.rows["10 perceptions acted on"] += 1
         if perception.kind == "restarted":
             self.restarted(perception)
+        elif perception.kind in ("assumption_failure", "assumption_holds"):
+            self.watch.believed[perception.subject] = perception.kind == "assumption_failure"
         elif (outcome := OUTCOMES.get(perception.kind)) is not None:
             self.book.answered((perception.epoch, int(perception.subject)), outcome)
             self.rows[f"answers: {perception.cause or outcome}"] += 1

@@ -13,6 +13,7 @@ from planner_reactor.link.session import VERSION, Frame
 from planner_reactor.simulation.cases import HELD, Fault, Kind
 from planner_reactor.simulation.improviser import CROWD
 from planner_reactor.simulation.lives import Crash
+from planner_reactor.simulation.sensors import NOTICED
 
 if TYPE_CHECKING:
     from planner_reactor.simulation.stage import Stage
@@ -202,6 +203,14 @@ def _sensor(stage: Stage, fault: Fault) -> None:
     stage.scheduler.call_after(fault.seconds + 15.0, over)
 
 
+def _noticed(stage: Stage, fault: Fault) -> None:
+    """A process notices, and no sensor reads it: it holds again, and that is noticed too, after a while or at the end.
+    """
+    stage.shop.flips(NOTICED, holds=False)
+    if stage.draw.random() < 0.5:
+        stage.scheduler.call_after(5.0 * fault.seconds, stage.shop.relent)
+
+
 def _flap(stage: Stage, fault: Fault) -> None:
     """A square wave of ten a second, noticed by a process, and it holds in the end."""
     shop, name = stage.shop, fault.what or "A0"
@@ -273,8 +282,9 @@ def _world(stage: Stage, fault: Fault) -> None:
 STRIKES: Mapping[Kind, Callable[[Stage, Fault], object]] = {
     "crash": _crash, "power": _crash, "storm": _storm, "cut": _cut, "silent_reactor": _cut, "silent_planner": _cut,
     "planner": _planner, "leader": _leader, "stale": _stale, "full": _disk, "sync": _disk, "halt": _halt,
-    "fails": _sensor, "flap": _flap, "unknown": _sensor, "stuck": _sensor, "noise": _sensor, "late": _sensor,
-    "raise": _deeds, "hang": _deeds, "failing": _deeds, "drive": _drive, "jump": _jump, "crowd": _crowd,
+    "fails": _sensor, "noticed": _noticed, "flap": _flap, "unknown": _sensor, "stuck": _sensor,
+    "noise": _sensor, "late": _sensor, "raise": _deeds, "hang": _deeds, "failing": _deeds,
+    "drive": _drive, "jump": _jump, "crowd": _crowd,
     "replay": _replay, "version": _version, "watchdog": _watchdog, "world": _world,
     "nothing": lambda stage, fault: None,
 }  # fmt: skip

@@ -12,6 +12,7 @@ from collections import Counter, deque
 
 from planner_reactor.link.messages import Adaptation, Perception
 from planner_reactor.link.session import Session
+from planner_reactor.reactor.assumptions import CALM
 from planner_reactor.reactor.laws import Violation
 from planner_reactor.reactor.storms import COUNTED, Intensity
 from planner_reactor.runtime import Scheduler
@@ -48,6 +49,7 @@ class Watch:
         self._side: ReactorSide | None = None
         self._read: dict[str, Read] = {}  # what the sensors have said to this incarnation
         self._failing: dict[str, bool] = {}  # what the planner was told of an assumption last
+        self.believed: dict[str, bool] = {}  # what the planner that lives has heard: does it fail?
         self._changed: dict[str, float] = {}  # and when that was another thing than before
 
     def breach(self, law: int, message: str) -> None:
@@ -228,6 +230,16 @@ class Watch:
         if (come := len(side.sent) - unacknowledged) < before:
             self.breach(17, f"{before - come} {what} are on the way, and have been for a while")
 
+    def informed(self, side: ReactorSide | None) -> None:
+        """Law 17: the planner knows why something is disabled, also if it or the reactor began anew since."""
+        if side is None or side.session is None or side.reactor.halted:
+            return
+        for assumption in side.reactor.failed:
+            resting = side.reactor.resting_on(assumption)
+            self.totals["failures to be known"] += bool(resting)
+            if resting and not assumption.startswith(CALM) and not self.believed.get(assumption):
+                self.breach(17, f"{list(resting)} are disabled by {assumption}, and the planner was not told")
+
     def at_rest(self, side: ReactorSide | None) -> None:
         """Law 17: faults have ceased and the planner answered; everything is resolved, and both books agree."""
         if not self.agreed(side):
@@ -240,5 +252,7 @@ class Watch:
             held = [s.name for s in reactor.situations.held]
             halted = ", and it is halted" if reactor.halted else ""
             self.breach(17, f"{held} are held back, {list(reactor.failed)} are thought to fail{halted}")
+        for assumption in (a for a, failing in self.believed.items() if failing):
+            self.breach(17, f"{assumption} holds again, and the planner was not told")
         if self._last_beat is None or self.scheduler.now - self._last_beat > BEAT + LATE:
             self.breach(12, "the reaction that beats is not heard")

@@ -2,7 +2,8 @@
 
 Its deeds say which reaction does them on behalf of which instance, so that whoever watches can tell by itself whether
 an instance saw two versions. They take their time, abort, raise, hang and linger; an axis moves by a drive whose link
-may drop; three assumptions are sensed by sensors that go wrong (`sensors`); a watchdog stops it if nobody kicks.
+may drop; three assumptions are sensed by sensors that go wrong (`sensors`), a fourth by none; a watchdog stops it if
+nobody kicks.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 from planner_reactor.runtime import Aborted, Host, Scheduler, Signal
-from planner_reactor.simulation.sensors import ASSUMPTIONS, Read, Sensors, caution_of
+from planner_reactor.simulation.sensors import ASSUMPTIONS, NOTICED, Read, Sensors, caution_of
 
 LONGEST_DEED, LINGERING = 40.0, 200.0
 """Seconds that a deed takes at most, and one that hardly ends."""
@@ -99,6 +100,10 @@ class Workshop:
         self.sensors.reported(name, holds)
         self.host.report(name, holds, "noticed")
 
+    def relent(self) -> None:
+        """What only a process notices holds again, and one does."""
+        self.flips(NOTICED, holds=True)
+
     def link_drive(self, linked: bool) -> None:
         """The drive's link drops, or is there again; meanwhile somebody pushes the axis."""
         self.axis.linked = linked
@@ -114,6 +119,7 @@ class Workshop:
         host.watchdog = self.dog
         for name in ASSUMPTIONS:
             host.assumption(name, caution_of(name))(lambda name=name: self.sensors.sense(name))
+        host.assumption(NOTICED)(lambda: None)
         host.process(window=(0.0, LONGEST_DEED), name="Do")(self._do)
         host.process(window=(0.0, LINGERING), name="Linger")(self._linger)
         host.process(window=(0.0, LONGEST_DEED), name="Pause")(self._pause)
