@@ -17,8 +17,8 @@ from planner_reactor.workcell.disturbances import DISTURBANCES
 World = Literal["workshop", "cell"]
 Kind = Literal[
     "crash", "power", "storm", "cut", "silent_reactor", "silent_planner", "planner", "leader", "stale", "full", "sync",
-    "halt", "fails", "noticed", "flap", "unknown", "stuck", "noise", "late", "raise", "hang", "failing", "drive", "jump",
-    "crowd", "replay", "version", "watchdog", "world", "nothing",
+    "halt", "fails", "noticed", "flap", "unknown", "stuck", "noise", "late", "raise", "hang", "failing", "drive",
+    "jump", "crowd", "replay", "version", "watchdog", "world", "nothing",
 ]  # fmt: skip
 Point = Literal[
     "received", "appending", "appended", "synced", "draining", "inhibited", "removed", "retired", "renewed", "added",
