@@ -6,7 +6,7 @@ BIN    := $(VENV)/bin
 PIP    := $(BIN)/python -m pip --disable-pip-version-check install --quiet --constraint constraints.txt
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test check figures bench docs conformance laws mutants fuzz crashes damage soak swaps nets chaos defects schedules clean denseness
+.PHONY: help demo test check figures bench docs conformance laws mutants fuzz crashes races damage soak swaps nets chaos defects schedules clean denseness
 
 help:  ## list the targets
 	@grep -hE '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## */  make \1\t/' | expand -t 22
@@ -48,6 +48,9 @@ crashes: $(VENV)/dev.done  ## crash, power loss and cut link at every step of ad
 
 damage: $(VENV)/dev.done  ## a journal of a thousand adaptations, cut at every byte and with every bit flipped
 	nice -n 10 $(BIN)/python -m tests.reactor.damage
+
+races: $(VENV)/dev.done  ## an adaptation, a failure and HALT at one instant of a reactor, in every order; resumes
+	nice -n 10 $(BIN)/python -m tests.reactor.races
 
 soak: $(VENV)/dev.done  ## a million situations: no byte, thread or file of one stays behind
 	nice -n 10 $(BIN)/python -m tests.soak

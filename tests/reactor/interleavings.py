@@ -6,6 +6,7 @@ asks, and is run anew until each choice was made in every way, depth first.
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable, Iterator, Sequence
 
 from planner_reactor.rs.terms import Program
@@ -26,22 +27,33 @@ def every_interleaving(
     With `departures` only those runs that depart from first come, first served no more often than that: most races
     need one or two (Musuvathi and Qadeer, PLDI 2007).
     """
-    taken: list[int] = []
-    for count in range(1, MOST):
+    count = sum(1 for _ in itertools.islice(interleavings(play, at=at, departures=departures), MOST))
+    assert count < MOST, f"{MOST} interleavings or more"
+    return count
+
+
+def interleavings(
+    play: Callable[[GuidedScheduler], None],
+    *,
+    at: float | None = None,
+    departures: int | None = None,
+    begin: Sequence[int] = (),
+) -> Iterator[Sequence[int] | None]:
+    """Play one after the other, from `begin` on; how the next begins, after each, None after the last."""
+    taken: Sequence[int] | None = begin
+    while taken is not None:
         choices = _Choices(taken)
         scheduler = GuidedScheduler(choices, lambda name, low, high: low)
         choices.free = lambda scheduler=scheduler: at is None or scheduler.now == at  # type: ignore[misc]
         play(scheduler)
-        if (following := choices.following(departures)) is None:
-            return count
-        taken = following
-    raise AssertionError(f"more than {MOST} interleavings")
+        taken = choices.following(departures)
+        yield taken
 
 
 class _Choices:
     """The choices of one run: given at its beginning, the first of each from there on."""
 
-    def __init__(self, given: list[int]) -> None:
+    def __init__(self, given: Sequence[int]) -> None:
         self._given = given
         self._taken: list[tuple[int, int]] = []  # which, of how many
         self.free: Callable[[], bool] = lambda: True

@@ -16,18 +16,17 @@ any other test. The second half is about cancels of the reactor: adaptation, fai
 from __future__ import annotations
 
 import itertools
-import os
 
 import pytest
 
-from planner_reactor.link.messages import Adaptation
 from planner_reactor.rs.parser import parse_process
-from planner_reactor.runtime.guiding import GuidedScheduler, guide
-from tests.reactor.driving import FIRST, SECOND, Bench, change
-from tests.reactor.interleavings import STEPS, Stage, every_interleaving
+from planner_reactor.runtime.guiding import GuidedScheduler
+from tests.reactor.driving import FIRST, SECOND, Bench
+from tests.reactor.interleavings import Stage, every_interleaving
+from tests.reactor.races import IN_A_BODY, INSTANTS, TOGETHER, cancelled
 
-DEPARTURES = int(os.environ.get("DEPARTURES", "1"))
-"""Where a body begins or ends there are too many orders: two departures are 500 runs each."""
+DEPARTURES = 1
+"""Where a body begins or ends there are up to half a million orders."""
 
 ABORTED_AT = (0.0, 0.5, 1.0, 1.5, 2.0, 2.5, 3.9, 4.0)
 
@@ -153,49 +152,12 @@ def test_whatever_comes_first_at_one_instant_nothing_is_left_running(at: float, 
     assert not bench.reactor.situations.instances
 
 
-SERVED = Adaptation(
-    id=1,
-    definitions="""
-    P[0] = Delay[0.5] :; ASSERT[part]
-    P[1] = SIT[part]<k> :; (~(Do[old, 1.5] : SUCCEED[part, k]) : FAIL[part, k])
-    """,
-    changes=(change("part", 0, "A"),),
-    adds=(1, 0),
-)
-REPLACED = Adaptation(
-    id=2,
-    definitions="P[2] = SIT[part]<k> :; (~(Do[new, 1.5] : SUCCEED[part, k]) : FAIL[part, k])",
-    changes=(change("part", 1, "B"),),
-    kills=(1,),
-    adds=(2,),
-)
-
-
-@pytest.mark.parametrize("at", [0.5, 1.0, 2.0])
-@pytest.mark.parametrize("what", [("adapt", "fail"), ("adapt", "halt"), ("fail", "halt"), ("adapt", "fail", "halt")])
-def test_every_interleaving_of_cancels_at_one_instant(at: float, what: tuple[str, ...]) -> None:
-    """The same between the steps of a reactor: in a body every order, where one begins or ends by departures."""
-
-    def play(scheduler: GuidedScheduler) -> None:
-        bench = Bench(scheduler=scheduler, budgets=STEPS)
-        guide(bench.reactor.executer, scheduler)
-        does = {
-            "adapt": lambda: bench.reactor.receive(REPLACED),
-            "fail": lambda: bench.reactor.assumption_sensed("A", False),
-            "halt": bench.reactor.halt,
-        }
-        bench.at(0.0, SERVED)
-        for one in what:
-            scheduler.call_at(at, does[one])
-        bench.run(5.1)
-        bench.reactor.halt()
-        bench.run(6.0)
-        assert bench.reactor.laws.violations == []
-        assert bench.reactor.executer.statistics().basic_running == 0
-        assert len(bench.times("entered")) == len(bench.times("left"))
-        assert not bench.reactor.situations.instances
-
-    assert every_interleaving(play, at=at, departures=None if at == 1.0 else DEPARTURES) > 1
+@pytest.mark.parametrize("at", INSTANTS)
+@pytest.mark.parametrize("what", TOGETHER)
+def test_cancels_at_one_instant_of_a_reactor(at: float, what: tuple[str, ...]) -> None:
+    """In a body every order; where one begins or ends those with so many departures (`make races`: every order)."""
+    departures = None if at == IN_A_BODY else DEPARTURES
+    assert every_interleaving(lambda scheduler: cancelled(scheduler, at, what), at=at, departures=departures) > 1
 
 
 @pytest.mark.parametrize("at", ABORTED_AT)
