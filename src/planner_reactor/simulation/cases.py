@@ -45,6 +45,9 @@ CELL: Mapping[Kind, int] = {
 FAILING = 0.05
 """The part of the workshop's cases in which everything fails for a while."""
 
+TRUSTING = 0.5
+"""The part of the cell's cases in which its planner gives up nothing but what fails."""
+
 HELD = "holding"
 """What a crash of the cell waits for: something in the gripper."""
 
@@ -60,12 +63,15 @@ class Fault(msgspec.Struct, frozen=True, omit_defaults=True):
 
 
 class Case(msgspec.Struct, frozen=True, omit_defaults=True):
-    """`seconds`: how long faults strike; then they cease, and all has to come to rest (law 17)."""
+    """`seconds`: how long faults strike; then they cease, and all has to come to rest (law 17). `trusting`: the cell's
+    planner gives up nothing but what fails, so that much comes back.
+    """
 
     world: World
     seed: int
     seconds: float
     faults: tuple[Fault, ...] = ()
+    trusting: bool = False
 
 
 def drawn(world: World, seed: int, seconds: float) -> Case:
@@ -89,7 +95,18 @@ def drawn(world: World, seed: int, seconds: float) -> Case:
         faults.append(Fault("crash", round(draw.uniform(60.0, seconds), 2), None, 0.0, HELD))
     elif draw.random() < FAILING:
         faults.append(Fault("failing", round(draw.uniform(5.0, seconds / 2), 2), None, 1.0))
-    return Case(world, seed, seconds, tuple(sorted(faults, key=lambda f: (f.at, f.kind))))
+    trusting = world == "cell" and draw.random() < TRUSTING
+    if trusting:
+        faults += [fault for _ in range(max(1, int(seconds / 450))) for fault in _passing(draw, seconds)]
+    return Case(world, seed, seconds, tuple(sorted(faults, key=lambda f: (f.at, f.kind))), trusting)
+
+
+def _passing(draw: Random, seconds: float) -> tuple[Fault, ...]:
+    """Something goes wrong for good, and something for a while."""
+    at = round(draw.uniform(30.0, seconds), 2)
+    over = round(at + draw.uniform(20.0, 120.0), 2)
+    wrong = Fault("world", round(draw.uniform(30.0, seconds), 2), what=_what("world", draw))
+    return wrong, Fault("world", at, what="downstream_blocked"), Fault("world", over, what="downstream_ready")
 
 
 def _what(kind: Kind, draw: Random) -> str:

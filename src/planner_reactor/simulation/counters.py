@@ -54,6 +54,7 @@ ROWS: Mapping[str, tuple[int, str]] = {
     "32 restarts in a storm": (32, "restart storm"),
     "32 situations that failed too often": (32, "a storm of failures, then the safe stop"),
     "what only a process noticed, and fails still": (0, "failures that no sensor reads, told until the planner knows"),
+    "what failed and came back to the planner": (0, "assumptions reinstated by the cell's planner"),
     "halts": (0, "stop button (law 15)"),
     "watchdog: the machine was stopped": (0, "watchdog not kicked in time"),
 }

@@ -19,6 +19,8 @@ def read_cases(text: str) -> tuple[Case, ...]:
 def written(case: Case, why: str) -> str:
     """A case as it is kept."""
     lines = [f"# {why}", "[[case]]", f'world = "{case.world}"', f"seed = {case.seed}", f"seconds = {case.seconds}"]
+    if case.trusting:
+        lines.append("trusting = true")
     if case.faults:
         lines += ["faults = [", *(f"    {_row(fault)}," for fault in case.faults), "]"]
     return "\n".join(lines) + "\n"

@@ -15,7 +15,9 @@ from planner_reactor.analysis.permission import Environment
 from planner_reactor.link.messages import Perception, Standing
 from planner_reactor.logic.domain import Domain
 from planner_reactor.logic.reader import read_domain
+from planner_reactor.planner.beliefs import in_doubt
 from planner_reactor.planner.planner import Planner, Step
+from planner_reactor.reactor.assumptions import CALM as PRESUMED
 from planner_reactor.reactor.laws import Violation
 from planner_reactor.runtime import Scheduler
 from planner_reactor.simulation.books import Key
@@ -49,9 +51,13 @@ class Cell(Stage):
 
     def __init__(self, case: Case) -> None:
         super().__init__(case)
-        self.thinker = Planner(the_domain(), relax="all")
+        self.thinker = self._planner()
         self._asked = 0.0
         self._old: set[Key] = set()  # pending as the end comes near
+        self._unknown: set[str] = set()  # assumptions of which the two sides think otherwise as the end comes near
+
+    def _planner(self) -> Planner:
+        return Planner(the_domain(), relax=() if self.case.trusting else "all")
 
     def make_shop(self) -> CellShop:
         return CellShop(self.scheduler, self.trace)
@@ -86,13 +92,26 @@ class Cell(Stage):
     def open(self) -> None:
         """The planner begins with nothing."""
         self.shop.world.start(self.scheduler)
-        self.scheduler.call_at(self.case.seconds + CALM - SETTLING, lambda: self._old.update(self.book.pending))
+        self.scheduler.call_at(self.case.seconds + CALM - SETTLING, self._settles)
         self._think()
+
+    def _settles(self) -> None:
+        self._old.update(self.book.pending)
+        self._unknown.update(self._differing())
+
+    def _differing(self) -> set[str]:
+        """What disables something and is trusted by the planner; what it was told to fail, and does not."""
+        if self.side is None or self.side.reactor.halted:
+            return set()
+        failed, reactor = self.side.reactor.failed, self.side.reactor
+        named = {a for a in failed if not a.startswith(PRESUMED) and reactor.resting_on(a)}
+        trusted = {a for a in named if not in_doubt(a, frozenset(self.thinker.relaxed))}
+        return trusted | {a for a, failing in self.watch.believed.items() if failing and a not in failed}
 
     def planner_begins(self, planner: PlannerSide) -> None:
         """The first meets a reactor that is as new as it is; any other asks how it stands."""
         if self.planners > 1:
-            self.thinker = Planner(the_domain(), relax="all")
+            self.thinker = self._planner()
             self.thinker.enquire(self.planners)
         limits = {name: process.limit for name, process in self.shop.host.processes.items()}
         self.thinker.meet(Environment(self.shop.host.signatures, limits))
@@ -144,8 +163,13 @@ class Cell(Stage):
         watch.agreed(self.side)
         if unanswered := self._old.intersection(self.book.pending):
             watch.breach(17, f"adaptations {sorted(unanswered)} are not resolved after {SETTLING} s")
+        for assumption in sorted(self._unknown & self._differing()):
+            watch.breach(17, f"the planner does not know how it is with {assumption}, after {SETTLING} s")
         if self.thinker.waits or self.thinker.fenced:
             watch.breach(17, "the planner was not told how the reactor stands")
+        self.rows["what failed and came back to the planner"] += sum(
+            relaxation.cause == "reinstated" for relaxation in self.thinker.relaxations
+        )
         self.rows["kits completed"] += world.plant.downstream.completed
 
 
