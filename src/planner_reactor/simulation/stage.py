@@ -77,7 +77,7 @@ class Stage:
         self.armed: list[Fault] = []
         self.restarts: list[float] = []
         self.counting = Counting(self)
-        self.shop.did = lambda s, i, v: self.watch.did(self.side, s, i, v)
+        self.shop.did = self._did
         self.shop.failed = self._failed
         self.shop.beat = self.watch.beat
         self.trace.sinks.append(self._traced)
@@ -314,6 +314,11 @@ class Stage:
             self.armed.append(fault)
         else:
             strike(self, fault)
+
+    def _did(self, situation: str, instance: int, version: int) -> None:
+        self.watch.did(self.side, situation, instance, version)
+        if self.shop.dog.stands(self.scheduler.now):
+            self.watch.breach(15, f"a deed of {situation}, and the watchdog has stopped the machine")
 
     def _failed(self, situation: str) -> None:
         if self.side is not None:

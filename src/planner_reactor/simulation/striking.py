@@ -146,7 +146,7 @@ def _version(stage: Stage, fault: Fault) -> None:
 
 def _watchdog(stage: Stage, fault: Fault) -> None:
     """The device stops the machine for a reason of its own."""
-    stage.shop.dog.tripped = True
+    stage.shop.dog.trip(stage.scheduler.now)
 
 
 def _disk(stage: Stage, fault: Fault) -> None:

@@ -51,16 +51,25 @@ class Dog:
     period, patience = 2.0, 12.0
 
     def __init__(self) -> None:
-        self.tripped = False
+        self.tripped: float | None = None  # when
         self.kicked: float | None = None
 
+    def trip(self, now: float) -> None:
+        """It stops the machine."""
+        self.tripped = now if self.tripped is None else self.tripped
+
     def kick(self, now: float) -> bool:
-        self.tripped = self.tripped or (self.kicked is not None and now - self.kicked > self.patience)
+        if self.kicked is not None and now - self.kicked > self.patience:
+            self.trip(now)
         self.kicked = now
-        return not self.tripped
+        return self.tripped is None
 
     def reset(self) -> None:
-        self.tripped, self.kicked = False, None
+        self.tripped = self.kicked = None
+
+    def stands(self, now: float) -> bool:
+        """Was the machine stopped so long ago that who kicks knows?"""
+        return self.tripped is not None and now > self.tripped + self.period
 
 
 class Workshop:
