@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import msgspec
@@ -52,6 +53,16 @@ def mixing(patch: Patch) -> None:
 
 def endless(patch: Patch) -> None:
     patch.setattr(adaptation.Transactions, "_expire", lambda self, transaction: None)
+
+
+def letting_in(patch: Patch) -> None:
+    usual = Situations._queue
+
+    def queue(self: Situations, situation: Any, arguments: Any, owner: Any, strand: Any, again: bool) -> None:
+        begins = self._begin if situation.drains else partial(usual, self)
+        begins(situation, arguments, owner, strand, again)
+
+    patch.setattr(Situations, "_queue", queue)
 
 
 def orphaning(patch: Patch) -> None:
@@ -150,6 +161,7 @@ DEFECTS: dict[str, tuple[int, Callable[[Patch], None]]] = {
     "a body cut off": (2, cutting),
     "an instance served by old and new reactions": (3, mixing),
     "a deadline that is not kept": (4, endless),
+    "asserted while it is drained": (4, letting_in),
     "an inhibition left behind": (5, orphaning),
     "an adaptation applied twice": (6, twice),
     "planned against another version": (7, versionless),
@@ -172,6 +184,9 @@ def test_a_seeded_defect_is_seen_by_its_law(law: int, seed: Callable[[Patch], No
     if seed is endless:
         first = replace(first, definitions=first.definitions.replace("Do[old, 2]", "Long"))
         second = replace(second, deadline=5.0)
+    if seed is letting_in:
+        both = "P[0] = (STOP :; ASSERT[work]) | (Delay[0.4] :; ASSERT[part])"
+        first = replace(first, definitions=first.definitions.replace("P[0] = STOP :; ASSERT[work]", both))
     if seed is versionless:
         second = replace(second, changes=(change("part", 7),))
     if seed is epochless:

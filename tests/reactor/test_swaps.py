@@ -50,7 +50,7 @@ def unserved(cell: SwapCell) -> None:
 
 def dropped(cell: SwapCell) -> None:
     cell.reactor.perceive("information", "lost")
-    del cell.told._waiting[cell.told.sent]
+    cell.told._waiting.popitem()
 
 
 def deaf(cell: SwapCell) -> None:

@@ -20,7 +20,7 @@ from planner_reactor.reactor.reactions import Reactions
 from planner_reactor.reactor.readings import Readings
 from planner_reactor.reactor.situations import Situations, named
 from planner_reactor.reactor.versions import Lifetime
-from planner_reactor.runtime import Scheduler
+from planner_reactor.runtime import Executer, Scheduler
 
 CHECKED = (1, 2, 3, 4, 5, 6, 7, 8, 10, 11, 13, 14, 15)
 GRACE = 1e-6
@@ -30,6 +30,7 @@ class Watched(Protocol):
     """What the laws look at: a reactor."""
 
     scheduler: Scheduler
+    executer: Executer
     situations: Situations
     transactions: Transactions
     perceptions: PerceptionChannel
@@ -103,7 +104,10 @@ class Laws:
     # -- what has happened (`WATCHES`)
 
     def _asserts(self, fields: dict[str, Any]) -> None:
+        """Law 4, bounded: what is drained gets nothing new, or it need never end."""
         self._asserted += 1
+        if self._reactor.situations.named(fields["situation"]).drains:
+            self.breach(4, f"instance {fields['instance']} of {fields['situation']} begins, which is drained")
 
     def _adds(self, fields: dict[str, Any]) -> None:
         self._added.add(fields["label"])
@@ -319,9 +323,11 @@ class Laws:
             self.breach(14, f"{assumption} was read to fail as often as it takes, and counts as holding")
 
     def _halted(self) -> None:
-        """Law 15: after HALT no basic process runs, until a reset."""
+        """Law 15: after HALT no basic process runs and no situation is on, until a reset."""
         if running := self._reactor.commands():
             self.breach(15, f"{running} basic processes run though the reactor is halted")
+        if not self._reactor.executer.killing and (on := self._reactor.situations.instances):
+            self.breach(15, f"instances {sorted(on)} are on though the reactor is halted")
 
 
 WATCHES: dict[str, Callable[[Laws, dict[str, Any]], None]] = {
