@@ -289,6 +289,8 @@ class Stage:
         self.rows["10 perceptions acted on"] += 1
         if perception.kind == "restarted":
             self.restarted(perception)
+        elif perception.kind == "error" and perception.subject == "journal" and not self.disk.refused:
+            self.watch.breach(10, "the planner is told of a disk that takes nothing, and it has taken everything")
         elif perception.kind in ("assumption_failure", "assumption_holds"):
             self.watch.believed[perception.subject] = perception.kind == "assumption_failure"
         elif (outcome := OUTCOMES.get(perception.kind)) is not None:

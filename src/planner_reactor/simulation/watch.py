@@ -9,11 +9,13 @@ is held against the planner's book, what it believes against what the sensors sa
 from __future__ import annotations
 
 from collections import Counter, deque
+from math import inf
 
 from planner_reactor.link.messages import Adaptation, Perception
 from planner_reactor.link.session import Session
 from planner_reactor.reactor.assumptions import CALM
 from planner_reactor.reactor.laws import Violation
+from planner_reactor.reactor.situations import Situations
 from planner_reactor.reactor.storms import COUNTED, Intensity
 from planner_reactor.runtime import Scheduler
 from planner_reactor.simulation.books import Book, Key
@@ -44,6 +46,7 @@ class Watch:
         self.late_versions = 0
         self._intensity = intensity
         self._failures: dict[str, deque[float]] = {}
+        self._stormy: set[str] = set()  # what has failed too often, and was not changed since
         self._versions: dict[tuple[str, int], int] = {}
         self._last_beat: float | None = None
         self._side: ReactorSide | None = None
@@ -65,6 +68,7 @@ class Watch:
         self._failing, self._changed = {}, {}
         self._versions.clear()
         self._failures.clear()
+        self._stormy.clear()
         self._last_beat = None
         side.reactor.laws.ledgers.append(lambda: self._unbalanced(side))
 
@@ -137,8 +141,15 @@ class Watch:
             self._believes(event.data["assumption"], failing=event.kind == "assumption_failure")
         elif event.kind == "ended" and not event.data["ok"] and event.data["cause"] in COUNTED:
             self._fails(event.data["situation"])
-        elif event.kind in ("halted", "adaptation_applied"):
+        elif event.kind == "storm":
+            self._stormy.add(event.data["situation"])
+        elif event.kind == "halted":
             self._failures.clear()
+            self._stormy.clear()
+        elif event.kind == "adaptation_applied":
+            self._failures.clear()
+            if self._side is not None and (transaction := self._side.reactor.last_applied) is not None:
+                self._stormy.difference_update(transaction.situations)
 
     def _fails(self, situation: str) -> None:
         """Law 13: what fails too often is stopped, within the step in which it does (row 32)."""
@@ -152,7 +163,11 @@ class Watch:
             self.breach(13, f"{situation} has failed {len(times)} times in {limit.window} s")
 
     def _serves(self, situation: str) -> None:
-        """Law 14: no body begins that rests on what was read to fail for as long as its monitor may take."""
+        """Law 14: no body begins that rests on what was read to fail for as long as its monitor may take. Law 13: nor
+        one of what has failed too often.
+        """
+        if situation in self._stormy:
+            self.breach(13, f"{situation} is served, which has failed too often")
         if self._side is None:
             return
         for assumption in self._side.reactor.journal.state.committed.rests_on.get(situation, ()):
@@ -252,7 +267,16 @@ class Watch:
             held = [s.name for s in reactor.situations.held]
             halted = ", and it is halted" if reactor.halted else ""
             self.breach(17, f"{held} are held back, {list(reactor.failed)} are thought to fail{halted}")
+        retired = [(r.label, r.situation) for r in reactor.transactions.retired]
+        if retired and not any(_may_serve(reactor.situations, n, s) for n, s in retired):
+            self.breach(17, f"reactions {[n for n, _ in retired]} were retired, serve nothing, and are still there")
         for assumption in (a for a, failing in self.believed.items() if failing):
             self.breach(17, f"{assumption} holds again, and the planner was not told")
         if self._last_beat is None or self.scheduler.now - self._last_beat > BEAT + LATE:
             self.breach(12, "the reaction that beats is not heard")
+
+
+def _may_serve(situations: Situations, label: int, situation: str | None) -> bool:
+    """Is there an instance still that this retired reaction may have to serve?"""
+    last = situations.versions.served(label, situation)[1] if situation else inf
+    return situation is not None and last < inf and situations.has_older(situation, int(last))
