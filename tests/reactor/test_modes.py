@@ -238,3 +238,15 @@ def test_an_old_version_that_is_not_given_up_is_seen(monkeypatch: pytest.MonkeyP
     bench.scheduler.call_at(3.2, lambda: bench.reactor.assumption_sensed("A", False))
     bench.run(12.0)
     assert {violation.law for violation in bench.reactor.laws.violations} == {14}
+
+
+def test_what_is_gone_is_forgotten() -> None:
+    """A reaction that was retired and has gone leaves nothing behind, however many adaptations a reactor has seen."""
+    bench = Bench()
+    bench.at(0.0, FIRST)
+    bench.at(3.0, in_mode(SECOND, "versions"))
+    bench.run(3.5)
+    assert bench.reactor.situations.versions._retired.keys() == {2, 3}
+    bench.run(20.0)
+    versions = bench.reactor.situations.versions
+    assert {*versions._born, *versions._retired} <= bench.reactor.reactions.keys()
