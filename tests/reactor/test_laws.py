@@ -70,6 +70,18 @@ def orphaning(patch: Patch) -> None:
     patch.setattr(Situations, "root_ended", lambda self, owner: None)
 
 
+def holding_on(patch: Patch) -> None:
+    usual = Situations.uninhibit
+
+    def uninhibit(self: Situations, name: str, owner: Any) -> bool:
+        before = self.named(name).held_back
+        found = usual(self, name, owner)
+        self.named(name).held_back = before
+        return found
+
+    patch.setattr(Situations, "uninhibit", uninhibit)
+
+
 def twice(patch: Patch) -> None:
     usual = Reactor._finished
 
@@ -163,6 +175,7 @@ DEFECTS: dict[str, tuple[int, Callable[[Patch], None]]] = {
     "a deadline that is not kept": (4, endless),
     "asserted while it is drained": (4, letting_in),
     "an inhibition left behind": (5, orphaning),
+    "held back by nobody": (5, holding_on),
     "an adaptation applied twice": (6, twice),
     "planned against another version": (7, versionless),
     "applied and not in the journal": (8, undurable),

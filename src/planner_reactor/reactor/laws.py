@@ -112,6 +112,11 @@ class Laws:
     def _adds(self, fields: dict[str, Any]) -> None:
         self._added.add(fields["label"])
 
+    def _queues(self, fields: dict[str, Any]) -> None:
+        """Law 5: what waits is held back by somebody, who will let it go."""
+        if not self._reactor.situations.named(fields["situation"]).blocked:
+            self.breach(5, f"{fields['situation']} is asserted and waits, and nothing holds it back")
+
     def _completes(self, fields: dict[str, Any]) -> None:
         self._ended += 1
         self._seen.pop(fields["instance"], None)
@@ -338,6 +343,7 @@ WATCHES: dict[str, Callable[[Laws, dict[str, Any]], None]] = {
     "frozen": Laws._freezes,
     "inhibited": Laws._holds,
     "left": Laws._leaves,
+    "queued": Laws._queues,
     "removed": Laws._removes,
     "retired": Laws._retires,
 }

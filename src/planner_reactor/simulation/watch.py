@@ -267,6 +267,8 @@ class Watch:
             held = [s.name for s in reactor.situations.held]
             halted = ", and it is halted" if reactor.halted else ""
             self.breach(17, f"{held} are held back, {list(reactor.failed)} are thought to fail{halted}")
+        for name in [s.name for s in reactor.situations if s.queue and not s.blocked]:
+            self.breach(17, f"{name} is asserted and waits, and nothing holds it back")
         retired = [(r.label, r.situation) for r in reactor.transactions.retired]
         if retired and not any(_may_serve(reactor.situations, n, s) for n, s in retired):
             self.breach(17, f"reactions {[n for n, _ in retired]} were retired, serve nothing, and are still there")
