@@ -12,7 +12,7 @@ from typing import Literal
 
 import msgspec
 
-from planner_reactor.workcell.disturbances import DISTURBANCES
+from planner_reactor.workcell.disturbances import DISTURBANCES, PASSING
 
 World = Literal["workshop", "cell"]
 Kind = Literal[
@@ -103,10 +103,11 @@ def drawn(world: World, seed: int, seconds: float) -> Case:
 
 def _passing(draw: Random, seconds: float) -> tuple[Fault, ...]:
     """Something goes wrong for good, and something for a while."""
+    begins, ends = PASSING
     at = round(draw.uniform(30.0, seconds), 2)
     over = round(at + draw.uniform(20.0, 120.0), 2)
     wrong = Fault("world", round(draw.uniform(30.0, seconds), 2), what=_what("world", draw))
-    return wrong, Fault("world", at, what="downstream_blocked"), Fault("world", over, what="downstream_ready")
+    return wrong, Fault("world", at, what=begins), Fault("world", over, what=ends)
 
 
 def _what(kind: Kind, draw: Random) -> str:

@@ -37,6 +37,9 @@ class Disturbance(msgspec.Struct, frozen=True):
 DISTURBANCES: dict[str, Disturbance] = {}
 """Every kind of fault, by name."""
 
+PASSING = ("downstream_blocked", "downstream_ready")
+"""What begins and what ends the fault whose assumption comes back."""
+
 
 def _kind(
     name: str, *, breaks: str = "", sensed_by: tuple[str, ...] = (), **defaults: Any
